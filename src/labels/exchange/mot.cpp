@@ -225,8 +225,9 @@ class SequenceFolder {
   }
 
   void add(std::vector<double> n, const Where& where) {
+    if (n.size() < 6 || n.size() > 10)
+      throw Error(fmt::format("has {} columns; expected 6 to 10", n.size()), where);
     if (has_world_columns_ && n.size() > 7) n.resize(7);
-    if (n.size() < 6) throw Error(fmt::format("has {} columns; expected 6 to 10", n.size()), where);
     const auto frame = whole_in(n[0], 1, kMaxFrames);
     if (!frame) throw Error("the frame is no whole number from 1 on", where);
     const auto track = whole_in(n[1], kNoTrack, kMaxTracks);

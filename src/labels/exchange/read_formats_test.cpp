@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "labels/exchange/exchange.h"
@@ -484,6 +485,8 @@ TEST(Errors, NameTheFileAndThePlace) {
   folder.file("m/gt/gt.txt", "1,1,5,5,9,9\n0,1,5,5,9,9\n");
   ends(error_of(Format::kMot, folder.path() / "m"),
        "gt.txt:2: the frame is no whole number from 1 on");
+  folder.file("m/gt/gt.txt", "1;1;10.5;20.5;30;40;1;1;1;5;7\n");
+  ends(error_of(Format::kMot, folder.path() / "m"), "gt.txt:1: has 11 columns; expected 6 to 10");
   folder.file("o/groundtruth_rect.txt", "1,2,3,4\n1,2,x,4\n");
   ends(error_of(Format::kOtb, folder.path() / "o"),
        "groundtruth_rect.txt:2:5: 'x' is not a number");
@@ -498,10 +501,29 @@ TEST(Errors, NameTheFileAndThePlace) {
        "t.csv:2: has 4 columns; expected frame,x,y,w,h");
   // A cell that is empty would move those behind it.
   ends(error_of(Format::kCsv, folder.file("e.csv", "frame,score,x,y,w,h\n0,,1,2,3,4\n")),
-       "e.csv:2: has 5 columns; expected frame,score,x,y,w,h");
+       "e.csv:2:3: has an empty cell; expected a number");
   ends(error_of(Format::kCsv, folder.file("d.csv", "frame,id,x,y,w,h\n0,7,1,2,3,4\n0,7,5,6,7,8\n")),
        "d.csv:3: has the track 7 a second time in frame 0");
   ends(error_of(Format::kYolo, folder.path() / "nowhere"), "nowhere: does not exist");
+}
+
+// pandas writes what is unknown as an empty cell, and a German Excel 12.5 as "12,5" between
+// semicolons.
+TEST(Numbers, KeepTheirColumns) {
+  const auto of = [](const std::string& text) {
+    try {
+      return fmt::format("{}", fmt::join(numbers_of({3, text}, "t"), " "));
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  };
+  for (const char* text : {"1,2.5,3", "1;2.5;3", "1 2.5\t3", " 1 , 2.5 ,3,"})
+    EXPECT_EQ(of(text), "1 2.5 3") << text;
+  EXPECT_EQ(of("1,,3"), "t:3:3: has an empty cell; expected a number");
+  EXPECT_EQ(of("1; ;3"), "t:3:4: has an empty cell; expected a number");
+  EXPECT_EQ(of(",2"), "t:3:1: has an empty cell; expected a number");
+  EXPECT_EQ(of("12,5;33,25;10,5;8,75"),
+            "t:3:3: has commas between semicolons; expected decimal points");
 }
 
 // "0,0,0,0" and "nan" state that there is no box; a box without width is left out with a warning.

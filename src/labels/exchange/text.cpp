@@ -51,15 +51,25 @@ std::vector<double> numbers_of(const Line& line, const fs::path& file) {
   std::vector<double> numbers;
   const std::string_view separators = ",; \t";
   const std::string_view text = line.text;
+  const auto fail = [&](const std::string& what, std::size_t at) {
+    throw Error(what, {file.string(), line.number, static_cast<int>(at) + 1});
+  };
+  if (text.find(',') != text.npos && text.find(';') != text.npos)
+    fail("has commas between semicolons; expected decimal points", text.find(','));
+  bool is_cell_empty = true;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find_first_of(separators, at), text.size());
     const std::string_view word = text.substr(at, end - at);
     if (!word.empty()) {
       const auto number = number_from(word);
-      if (!number)
-        throw Error(fmt::format("'{}' is not a number", word.substr(0, 40)),
-                    {file.string(), line.number, static_cast<int>(at) + 1});
+      if (!number) fail(fmt::format("'{}' is not a number", word.substr(0, 40)), at);
       numbers.push_back(*number);
+      is_cell_empty = false;
+    }
+    // Left out, it would move the numbers behind it.
+    if (end < text.size() && (text[end] == ',' || text[end] == ';')) {
+      if (is_cell_empty) fail("has an empty cell; expected a number", end);
+      is_cell_empty = true;
     }
     at = end + 1;
   }

@@ -30,8 +30,9 @@ std::optional<double> number_in(std::string_view text);
 // The shortest text that reads back as the same number.
 std::string number(double value);
 
-// The numbers of a line, split at commas, semicolons, tabs and blanks. "nan" is a number. Throws
-// Error with the line.
+// The numbers of a line, split at commas or semicolons, tabs and blanks. "nan" is a number. Throws
+// Error with the line and the column, also for an empty cell that others follow and for a line with
+// commas and semicolons, whose commas are decimal ones.
 std::vector<double> numbers_of(const Line& line, const fs::path& file);
 
 // Lines of the form `key = value` or `key=value`; [sections] are skipped.
