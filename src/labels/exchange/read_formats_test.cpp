@@ -490,6 +490,12 @@ TEST(Errors, NameTheFileAndThePlace) {
   folder.file("o/groundtruth_rect.txt", "1,2,3,4\n1,2,x,4\n");
   ends(error_of(Format::kOtb, folder.path() / "o"),
        "groundtruth_rect.txt:2:5: 'x' is not a number");
+  // A line is a frame, and the last one ends with a line end or several.
+  folder.file("o/groundtruth_rect.txt", "1,2,3,4\n1,2,3,4\n\n1,2,3,4\n\n");
+  ends(error_of(Format::kOtb, folder.path() / "o"),
+       "groundtruth_rect.txt:3: is empty; expected the numbers of a frame, or nan");
+  folder.file("o/groundtruth_rect.txt", "1,2,3,4\nnan\n1,2,3,4\n\n");
+  ends(error_of(Format::kOtb, folder.path() / "o"), "no error");
   folder.file("mask/groundtruth.txt", "m0,0,4,2,3,6\n");
   ends(error_of(Format::kVot, folder.path() / "mask"),
        "groundtruth.txt:1: is no mask: its run lengths do not fit its window");

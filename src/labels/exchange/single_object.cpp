@@ -67,11 +67,21 @@ fs::path pictures_of_sequence(Format format, const fs::path& folder) {
                                   : folder;
 }
 
+// The lines of a file with one for each frame: a blank one would move those behind it.
+std::vector<Line> lines_of_frames(const fs::path& file) {
+  std::vector<Line> lines = lines_of(file);
+  for (const Line& line : lines)
+    if (line.is_behind_blank)
+      throw Error("is empty; expected the numbers of a frame, or nan",
+                  {file.string(), line.number - 1});
+  return lines;
+}
+
 // Columns beside the boxes; empty where the file does not exist.
 std::vector<double> column(const fs::path& file) {
   std::vector<double> values;
   if (!fs::exists(file)) return values;
-  for (const Line& line : lines_of(file))
+  for (const Line& line : lines_of_frames(file))
     for (const double value : numbers_of(line, file)) values.push_back(value);
   return values;
 }
@@ -214,7 +224,7 @@ class SequenceReader {
   void boxes_of(const fs::path& file, std::int64_t track) {
     std::size_t frame_number = 0;
     const double from = format_ == Format::kVot ? 0 : 1;
-    for (const Line& line : lines_of(file)) {
+    for (const Line& line : lines_of_frames(file)) {
       LabelledFrame& frame = frame_at(clip_, frame_number++);
       const auto box = format_ == Format::kVot && line.text.starts_with('m')
                            ? box_of_mask(line, file)

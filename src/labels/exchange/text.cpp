@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -37,11 +38,14 @@ std::vector<Line> lines_of(const fs::path& file) {
   const std::string text = read_file(file);
   std::vector<Line> lines;
   int number = 0;
+  bool is_behind_blank = false;
   for (std::size_t at = text.size() - without_mark(text).size(); at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     ++number;
     const std::string_view line = trimmed(std::string_view(text).substr(at, end - at));
-    if (!line.empty() && line.front() != '#') lines.push_back({number, std::string(line)});
+    if (!line.empty() && line.front() != '#')
+      lines.push_back({number, std::string(line), std::exchange(is_behind_blank, false)});
+    is_behind_blank = is_behind_blank || line.empty();
     at = end + 1;
   }
   return lines;

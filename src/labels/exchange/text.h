@@ -22,6 +22,8 @@ struct Line {
   // From 1.
   int number = 0;
   std::string text;
+  // A blank line lies between it and the one before it, or the file's begin.
+  bool is_behind_blank = false;
 };
 std::vector<Line> lines_of(const fs::path& file);
 
