@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -164,7 +165,7 @@ class FlightReader {
                const std::string& id,
                const JsonObject& flight,
                const Reading& in)
-      : file_(file), flight_(flight), left_out_(in.left_out), warn_(in.warn), classes_(in.classes) {
+      : file_(file), flight_(flight), in_(in) {
     clip_.name = id;
   }
 
@@ -180,7 +181,7 @@ class FlightReader {
     }
     const auto frames = whole_in(about.maybe_number("number_of_frames").value_or(0), 0, kMaxFrames);
     if (!frames) about.fail("number_of_frames is no number of frames");
-    if (*frames > 0) frame_at(clip_, static_cast<std::size_t>(*frames) - 1);
+    if (*frames > 0) frame_at(clip_, static_cast<std::size_t>(*frames) - 1, in_);
     const std::vector<JsonObject> entities = flight_.objects("entities");
     // Times in the published files count from 1970; those of a Clip count from the flight's first
     // frame.
@@ -198,7 +199,7 @@ class FlightReader {
     const JsonObject blob = entity.object("blob");
     const std::int64_t number = blob.whole("frame");
     if (number < 0 || number > kMaxFrames) blob.fail("frame is out of range");
-    LabelledFrame& frame = frame_at(clip_, static_cast<std::size_t>(number));
+    LabelledFrame& frame = frame_at(clip_, static_cast<std::size_t>(number), in_);
     if (const auto name = entity.maybe_text("img_name")) {
       expect_inside(*name, {file_.string()});
       frame.picture = *name;
@@ -216,21 +217,21 @@ class FlightReader {
     const auto stated = blob.has("category") && kind == "Airborne"
                             ? std::optional<std::string_view>("balloon")
                             : annotation::class_of_category(kind);
-    if (stated) classes_.emplace(label.category, *stated);
+    if (stated) in_.classes.emplace(label.category, *stated);
     label.range_m = range_of(blob);
     label.contrast_to_noise = blob.maybe_number("contrast_to_noise");
     if (entity.has("labels")) {
       const auto above = entity.object("labels").maybe_number("is_above_horizon");
       if (above && *above != 0) label.above_horizon = *above > 0;
     }
-    add_label(frame.labels, label, clip_, left_out_, entity.place());
+    add_label(frame.labels, label, clip_, in_.left_out, entity.place());
   }
 
   // Pictures belong to frames by img_name.
   void join() {
     const fs::path images = file_.parent_path().parent_path() / "Images" / clip_.name;
     if (pictures_in(images).empty()) return;
-    join_by_name(clip_, images, warn_);
+    join_by_name(clip_, images, in_.warn);
   }
 
   // Where a range is unknown, the published files contain NaN, a string or no key.
@@ -242,22 +243,29 @@ class FlightReader {
     }
   }
 
-  // The track takes the number of the id where that is free, since "Airplane1" and "Helicopter1"
-  // are two objects.
+  // The track takes the number of the id, or the next one that is free, since "Airplane1" and
+  // "Helicopter1" are two objects.
   std::int64_t track_of(const std::string& id) {
-    if (const auto found = tracks_.find(id); found != tracks_.end()) return found->second;
-    std::int64_t track = name_and_number(id).second.value_or(1);
-    while (std::ranges::any_of(tracks_, [&](const auto& known) { return known.second == track; }))
-      ++track;
-    return tracks_[id] = track;
+    const auto [known, is_new] = tracks_.try_emplace(id, 0);
+    if (is_new) known->second = take_from(name_and_number(id).second.value_or(1));
+    return known->second;
+  }
+
+  // Takes the first free number from `track` on. What it passes is made to lead there at once.
+  std::int64_t take_from(std::int64_t track) {
+    std::int64_t free = track;
+    for (auto at = after_.find(free); at != after_.end(); at = after_.find(free)) free = at->second;
+    while (track != free) track = std::exchange(after_[track], free);
+    after_[free] = free + 1;
+    return free;
   }
 
   fs::path file_;
   const JsonObject& flight_;
-  LeftOut& left_out_;
-  const Warn& warn_;
-  std::map<std::string, std::string>& classes_;  // Reading::classes
+  const Reading& in_;
   std::map<std::string, std::int64_t> tracks_;
+  // By each number that is taken, a later one below which none is free.
+  std::map<std::int64_t, std::int64_t> after_;
   std::optional<std::int64_t> origin_ns_;
   bool has_times_ = true;
   Clip clip_;

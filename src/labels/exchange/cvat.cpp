@@ -291,6 +291,7 @@ class TrackReader {
       step_ = 1;
     }
     if (*size == 0 && !top.child("image") && !top.child("track")) return;
+    in_.fill(static_cast<std::size_t>((last - first_) / step_ + 1), clip_.name);
     for (std::int64_t number = first_; number <= last; number += step_)
       clip_.frames.push_back({number, std::nullopt, {}});
   }
@@ -334,6 +335,7 @@ class TrackReader {
   }
 
   void put(const Label& label, std::size_t place) {
+    in_.fill(1, clip_.name);
     add_label(clip_.frames.at(place).labels, label, clip_, in_.left_out, file_.string());
   }
 

@@ -350,7 +350,9 @@ std::vector<Clip> read_clips(Format format,
                 {source.string()});
   LeftOut left_out(warn);
   std::map<std::string, std::string> classes;
-  std::vector<Clip> clips = about(format).read({format, source, options, warn, left_out, classes});
+  std::size_t filled = 0;
+  std::vector<Clip> clips =
+      about(format).read({format, source, options, warn, left_out, classes, filled});
   classify(clips, classes, options, warn);
   for (const Clip& clip : clips)
     for (const LabelledFrame& frame : clip.frames)

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -188,7 +189,7 @@ class SequenceFolder {
     clip_.height = side_of(number_in(about, "imHeight"));
     const auto frames = whole_in(number_in(about, "seqLength").value_or(0), 0, kMaxFrames);
     if (!frames) throw Error("seqLength is no number of frames", {file.string()});
-    if (*frames > 0) frame_at(clip_, static_cast<std::size_t>(*frames) - 1);
+    if (*frames > 0) frame_at(clip_, static_cast<std::size_t>(*frames) - 1, in_);
     for (const Line& line : lines_of(file)) {
       if (line.text == kNoVisibility) knows_visibility_ = false;
       if (!line.text.starts_with(kExactRate)) continue;
@@ -242,13 +243,10 @@ class SequenceFolder {
     if (n.size() > 9 && n[9] >= 0) label.range_m = n[9];
     if (!is_in_picture(label.box_px, clip_.width, clip_.height))
       return in_.left_out.add(kOutside, to_string(where));
-    LabelledFrame& labelled = frame_at(clip_, static_cast<std::size_t>(*frame) - 1);
-    for (const Label& other : labelled.labels)
-      if (other.track == label.track && label.track >= 0 &&
-          label.object_class != label_file::kIgnore && other.object_class != label_file::kIgnore)
-        throw Error(fmt::format("has the id {} a second time in frame {}", label.track, *frame),
-                    where);
-    labelled.labels.push_back(label);
+    if (*track >= 0 && label.object_class != label_file::kIgnore &&
+        !tracks_of_frames_.emplace(*frame, *track).second)
+      throw Error(fmt::format("has the id {} a second time in frame {}", *track, *frame), where);
+    frame_at(clip_, static_cast<std::size_t>(*frame) - 1, in_).labels.push_back(label);
   }
 
   // Whether tracks.txt says so. The writer above has no distractor considered.
@@ -272,6 +270,7 @@ class SequenceFolder {
   std::vector<std::string> classes_;
   const Reading& in_;
   std::map<std::int64_t, std::string> categories_;
+  std::set<std::pair<std::int64_t, std::int64_t>> tracks_of_frames_;
   bool knows_visibility_ = true;
   bool has_world_columns_ = false;
   Clip clip_;

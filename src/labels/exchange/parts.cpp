@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "foundation/base/error.h"
 
 namespace airtruth::exchange {
@@ -23,7 +25,18 @@ std::string numbered_stem(const Clip& clip, std::size_t i) {
   return clip.name + "_" + padded(static_cast<std::int64_t>(i), 6);
 }
 
-LabelledFrame& frame_at(Clip& clip, std::size_t number) {
+void Reading::fill(std::size_t more, const std::string& name) const {
+  filled += more;
+  if (filled > kMostFilled)
+    throw Error(fmt::format("states more than {} frames and boxes up to those of '{}', most of "
+                            "them by a number alone; expected fewer at once",
+                            kMostFilled,
+                            name),
+                {source.string()});
+}
+
+LabelledFrame& frame_at(Clip& clip, std::size_t number, const Reading& in) {
+  if (number >= clip.frames.size()) in.fill(number + 1 - clip.frames.size(), clip.name);
   for (std::size_t i = clip.frames.size(); i <= number; ++i)
     clip.frames.push_back({static_cast<std::int64_t>(i), std::nullopt, {}});
   return clip.frames[number];

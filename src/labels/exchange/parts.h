@@ -52,6 +52,11 @@ MakeWriter coco_writer, yolo_writer, mot_writer, voc_writer, cvat_writer, aot_wr
 
 using Clips = std::vector<Clip>;
 
+// The most frames and boxes of an import that its files need not state one by one: frames up to a
+// number, boxes between CVAT's key frames. Chosen: 4 GB or so of memory, and 20 clips of
+// kMaxFrames.
+constexpr std::size_t kMostFilled = 10'000'000;
+
 // What a reader is given.
 struct Reading {
   Format format;
@@ -62,6 +67,11 @@ struct Reading {
   // Filled by the reader: the classes that the set itself states for its categories, by name. Such
   // a class counts where the name states none.
   std::map<std::string, std::string>& classes;
+  // The frames and boxes so far that kMostFilled bounds.
+  std::size_t& filled;
+
+  // Counts `more` of them in the clip of that name. Throws Error where they are too many.
+  void fill(std::size_t more, const std::string& name) const;
 };
 
 // The class of a category by the options, or else by its name; empty where neither states one.
@@ -73,7 +83,7 @@ ReadFormat read_coco, read_yolo, read_mot, read_voc, read_cvat, read_aot, read_s
 
 // The frame of that number in a clip that has its frames from 0 on; frames that are missing up to
 // it are added.
-LabelledFrame& frame_at(Clip& clip, std::size_t number);
+LabelledFrame& frame_at(Clip& clip, std::size_t number, const Reading& in);
 
 // Adds a label to those of a picture, whose size is that of the clip or the LabelledPicture (0:
 // unknown); `place` says where a label stands that is left out.

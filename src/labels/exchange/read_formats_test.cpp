@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "labels/exchange/exchange.h"
+#include "labels/exchange/parts.h"
 #include "labels/exchange/text.h"
 #include "support/exchange_formats.h"
 
@@ -757,6 +758,57 @@ TEST(Labels, NamesLeadNowhereElse) {
   EXPECT_FALSE(is_read(std::string(201, 'a'), "p"));
   EXPECT_TRUE(is_read("a", "part/p.png"));
   EXPECT_FALSE(is_read("a", "p\\u0000.png"));
+}
+
+// Small files that state frames by their count, and boxes up to the next one.
+TEST(Frames, OfAnImportHaveABound) {
+  const Folder folder;
+  const ReadOptions options;
+  const Warn warn;
+  LeftOut left_out(warn);
+  std::map<std::string, std::string> classes;
+  const auto error = [&](Format format, ReadFormat* read, const char* place, std::size_t room) {
+    std::size_t filled = kMostFilled - room;
+    const fs::path source = folder.path() / place;
+    return test_support::error_of([&] {
+      read({format, source, options, warn, left_out, classes, filled});
+    });
+  };
+  folder.file("c.xml",
+              "<annotations><meta><task><name>s</name><size>90</size></task></meta>"
+              "<track id=\"0\" label=\"a\"><box frame=\"0\" xtl=\"1\" ytl=\"1\" xbr=\"4\" "
+              "ybr=\"5\"/></track></annotations>");
+  folder.file("m/a/seqinfo.ini", "seqLength=90\n");
+  folder.file("m/a/gt/gt.txt", "1,1,1,1,3,3,1,1,1\n");
+  folder.file("a.json", R"({"samples":{"f":{"metadata":{"number_of_frames":90},"entities":[]}}})");
+  const auto expect_bound = [&](Format format, ReadFormat* read, const char* place, int fits) {
+    EXPECT_EQ(error(format, read, place, static_cast<std::size_t>(fits)), "no error");
+    const std::string found = error(format, read, place, static_cast<std::size_t>(fits) - 1);
+    EXPECT_NE(found.find("states more than 10000000 frames and boxes"), std::string::npos) << found;
+  };
+  expect_bound(Format::kCvat, read_cvat, "c.xml", 180);
+  expect_bound(Format::kMot, read_mot, "m", 90);
+  expect_bound(Format::kAot, read_aot, "a.json", 90);
+}
+
+// Ids without a number take the first that is free, those with one the first from it on.
+TEST(Aot, ManyIdsHaveTracksOfTheirOwn) {
+  const Folder folder;
+  std::string entities;
+  const auto add = [&](const std::string& id) {
+    entities += fmt::format(
+        R"({}{{"blob":{{"frame":0}},"id":"{}","bb":[1,2,3,4]}})", entities.empty() ? "" : ",", id);
+  };
+  const int count = 20'000;
+  for (int i = 0; i < count; ++i) add(fmt::format("a{}x", i));
+  for (int i = 1; i <= count; ++i) add(fmt::format("Airplane{}", i));
+  const std::string text = R"({"samples":{"f":{"metadata":{},"entities":[)" + entities + "]}}}";
+  const auto clips = read_clips(Format::kAot, folder.file("a.json", text), {}, {});
+  const std::vector<std::int64_t> tracks = tracks_of(clips.at(0));
+  ASSERT_EQ(std::ssize(tracks), 2 * count);
+  EXPECT_EQ(tracks.back(), 2 * count);
+  EXPECT_EQ(clips[0].frames.at(0).labels.at(5).track, 6);
+  EXPECT_EQ(clips[0].frames.at(0).labels.at(count).track, count + 1);
 }
 
 TEST(Labels, ATrackIsOnceInAFrame) {

@@ -225,7 +225,7 @@ class SequenceReader {
     std::size_t frame_number = 0;
     const double from = format_ == Format::kVot ? 0 : 1;
     for (const Line& line : lines_of_frames(file)) {
-      LabelledFrame& frame = frame_at(clip_, frame_number++);
+      LabelledFrame& frame = frame_at(clip_, frame_number++, in_);
       const auto box = format_ == Format::kVot && line.text.starts_with('m')
                            ? box_of_mask(line, file)
                            : box_of(numbers_of(line, file), from);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -54,7 +55,7 @@ Clips read_evision(const Reading& in) {
       if (number > kMaxFrames)
         throw Error("frame_" + std::to_string(number + 1) + " is beyond any clip", {file.string()});
       // Numbers that the file skips are frames without any information.
-      if (number > 0) frame_at(clip, static_cast<std::size_t>(number) - 1);
+      if (number > 0) frame_at(clip, static_cast<std::size_t>(number) - 1, in);
       LabelledFrame labelled{std::ssize(clip.frames), std::nullopt, {}};
       if (frame && frame->rect_px.width > 0 && frame->rect_px.height > 0) {
         Label label;
@@ -118,18 +119,10 @@ Columns columns_of(const Line& header, const fs::path& file) {
 }
 
 // The track that a line states; kNoTrack where it states none.
-std::int64_t track_in(const std::vector<double>& n,
-                      const Columns& columns,
-                      const LabelledFrame& frame,
-                      const Where& where) {
+std::int64_t track_in(const std::vector<double>& n, const Columns& columns, const Where& where) {
   if (!columns.track) return kNoTrack;
   const auto track = whole_in(n[*columns.track], kNoTrack, kMaxTracks);
   if (!track) throw Error("the track is no whole number from 0 on", where);
-  const bool is_there =
-      std::ranges::find(frame.labels, *track, &Label::track) != frame.labels.end();
-  if (*track != kNoTrack && is_there)
-    throw Error(fmt::format("has the track {} a second time in frame {}", *track, frame.frame),
-                where);
   return *track;
 }
 
@@ -170,6 +163,7 @@ Clips read_csv(const Reading& in) {
     bool first = true;
     bool has_header = false;
     Columns columns;
+    std::set<std::pair<std::int64_t, std::int64_t>> tracks_of_frames;
     for (const Line& line : lines_of(file)) {
       const bool is_header = first && line.text.find_first_of("0123456789") != 0;
       first = false;
@@ -187,7 +181,7 @@ Clips read_csv(const Reading& in) {
         throw Error(fmt::format("has {} columns; expected {}", n.size(), columns.text), where);
       const auto i = whole_in(n[columns.frame], 0, kMaxFrames);
       if (!i) throw Error("the frame is no whole number from 0 on", where);
-      LabelledFrame& frame = frame_at(clip, static_cast<std::size_t>(*i));
+      LabelledFrame& frame = frame_at(clip, static_cast<std::size_t>(*i), in);
       Box box{n[columns.x], n[columns.y], n[columns.third], n[columns.fourth]};
       if (columns.are_corners) {
         box.width -= box.x;
@@ -200,7 +194,11 @@ Clips read_csv(const Reading& in) {
                              (box.width != 0 || box.height != 0);
       if (!is_stated) continue;
       Label label;
-      label.track = track_in(n, columns, frame, where);
+      label.track = track_in(n, columns, where);
+      if (label.track != kNoTrack && is_in_picture(box, clip.width, clip.height) &&
+          !tracks_of_frames.emplace(*i, label.track).second)
+        throw Error(fmt::format("has the track {} a second time in frame {}", label.track, *i),
+                    where);
       label.category = in.options.category;
       label.box_px = box;
       add_label(frame.labels, label, clip, in.left_out, to_string(where));
