@@ -85,6 +85,10 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
   return bytes;
 }
 
+void refuse_device(const fs::path& path) {
+  if (fs::is_other(path)) throw Error("is no regular file; expected one", {path.string()});
+}
+
 void refuse_existing(const fs::path& path, bool overwrite) {
   if (!overwrite && fs::exists(path))
     throw Error("exists already; give --overwrite to replace it", {path.string()});

@@ -31,6 +31,10 @@ void write_file(const fs::path& path,
                 const std::function<void(const AddBytes& add)>& write,
                 Flush flush = Flush::kNow);
 
+// Throws Error where the path is a pipe, a socket or a device. A set of others may hold such, and
+// reading one need not end.
+void refuse_device(const fs::path& path);
+
 // Throws Error where the path exists and may not be replaced.
 void refuse_existing(const fs::path& path, bool overwrite);
 

@@ -100,8 +100,11 @@ bool is_picture_file(const fs::path& file) {
 
 std::vector<std::string> pictures_in(const fs::path& folder) {
   std::vector<std::string> names;
-  for (const fs::path& file : entries(folder))
-    if (is_picture_file(file)) names.push_back(file.filename().string());
+  for (const fs::path& file : entries(folder)) {
+    if (!is_picture_file(file)) continue;
+    refuse_device(file);
+    names.push_back(file.filename().string());
+  }
   return names;
 }
 

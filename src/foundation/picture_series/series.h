@@ -15,7 +15,8 @@ namespace airtruth::picture_series {
 // .pgm, .webp), whatever the case of its letters.
 bool is_picture_file(const std::filesystem::path& file);
 
-// The names of the pictures in a folder, sorted, without hidden ones.
+// The names of the pictures in a folder, sorted, without hidden ones. Throws Error where one is a
+// pipe or a device.
 std::vector<std::string> pictures_in(const std::filesystem::path& folder);
 
 // Compares texts, with every run of digits as a number of any length.

@@ -281,7 +281,7 @@ Clips read_aot(const Reading& in) {
   folders.insert(folders.begin(), in.source);
   std::vector<fs::path> found;
   for (const fs::path& folder : folders)
-    if (fs::exists(folder / name)) found.push_back(folder / name);
+    if (is_there(folder / name)) found.push_back(folder / name);
   Clips clips;
   for (const fs::path& file : files_of(in.source, found, name)) {
     const JsonDocument json = python_json(file);

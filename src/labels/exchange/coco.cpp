@@ -222,7 +222,7 @@ std::vector<fs::path> annotation_files(const fs::path& folder, const Warn& warn)
   if (!instances.empty()) return instances;
   if (files.empty()) files = files_with(folder, ".json");
   for (const fs::path& part : entries(folder))
-    if (const fs::path file = part / "_annotations.coco.json"; fs::exists(file))
+    if (const fs::path file = part / "_annotations.coco.json"; is_there(file))
       files.push_back(file);
   return files;
 }

@@ -430,7 +430,7 @@ Clips read_cvat(const Reading& in) {
   for (const fs::path& folder : entries(in.source)) {
     for (const fs::path& file : files_with(folder, ".xml")) found.push_back(file);
     for (const fs::path& inner : entries(folder))
-      if (fs::exists(inner / "annotations.xml")) found.push_back(inner / "annotations.xml");
+      if (is_there(inner / "annotations.xml")) found.push_back(inner / "annotations.xml");
   }
   Clips clips;
   for (const fs::path& file : files_of(in.source, found, "annotations.xml"))

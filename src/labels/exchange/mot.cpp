@@ -136,15 +136,15 @@ class SequenceFolder {
  public:
   SequenceFolder(fs::path folder, const std::vector<std::string>& classes, const Reading& in)
       : folder_(std::move(folder)), classes_(classes), in_(in) {
-    if (classes_.empty() && fs::exists(folder_ / "gt" / "labels.txt"))
+    if (classes_.empty() && is_there(folder_ / "gt" / "labels.txt"))
       for (const Line& line : lines_of(folder_ / "gt" / "labels.txt"))
         classes_.push_back(line.text);
   }
 
   Clip read() {
     clip_.name = folder_.filename().string();
-    if (fs::exists(folder_ / "seqinfo.ini")) about(folder_ / "seqinfo.ini");
-    if (fs::exists(folder_ / "tracks.txt")) tracks(folder_ / "tracks.txt");
+    if (is_there(folder_ / "seqinfo.ini")) about(folder_ / "seqinfo.ini");
+    if (is_there(folder_ / "tracks.txt")) tracks(folder_ / "tracks.txt");
     const fs::path file = folder_ / "gt" / "gt.txt";
     Rows rows;
     for (const Line& line : lines_of(file))
@@ -282,11 +282,11 @@ std::unique_ptr<Writer> mot_writer(const Writing& to) { return std::make_unique<
 
 Clips read_mot(const Reading& in) {
   std::vector<std::string> categories;
-  if (fs::exists(in.source / "labels.txt"))
+  if (is_there(in.source / "labels.txt"))
     for (const Line& line : lines_of(in.source / "labels.txt")) categories.push_back(line.text);
   Clips clips;
   for (const fs::path& folder : two_levels(in.source))
-    if (fs::exists(folder / "gt" / "gt.txt"))
+    if (is_there(folder / "gt" / "gt.txt"))
       clips.push_back(SequenceFolder(folder, categories, in).read());
   if (clips.empty()) throw Error("holds no gt/gt.txt", {in.source.string()});
   return clips;

@@ -672,6 +672,26 @@ TEST(Pictures, OutsideOfTheirSetAreRefused) {
   }
 }
 
+// An archive may hold pipes and links to devices.
+TEST(Pictures, AndLabelsOfASetAreFiles) {
+  const Folder folder;
+  const auto expect_refused = [&](Format format, const char* set, const char* file) {
+    const fs::path link = folder.path() / set / file;
+    fs::create_directories(link.parent_path());
+    fs::create_symlink("/dev/null", link);
+    const std::string error = error_of(format, folder.path() / set);
+    EXPECT_TRUE(error.ends_with(std::string(file) + ": is no regular file; expected one")) << error;
+  };
+  folder.file("y/labels/1.txt", "0 0.5 0.5 0.1 0.1\n");
+  expect_refused(Format::kYolo, "y", "images/1.png");
+  folder.file("d/labels/1.txt", "");
+  expect_refused(Format::kYolo, "d", "data.yaml");
+  expect_refused(Format::kMot, "m", "a/gt/gt.txt");
+  folder.file("n/a/gt/gt.txt", "1,1,1,1,3,3\n");
+  expect_refused(Format::kMot, "n", "a/seqinfo.ini");
+  expect_refused(Format::kVot, "v", "a/groundtruth.txt");
+}
+
 // A set without parts: its pictures lie in images/ beside the annotations, or beside them.
 TEST(Coco, PicturesOfASetWithoutPartsAreFound) {
   for (const std::string where : {"s/images/a/1.png", "s/a/1.png"}) {

@@ -51,12 +51,12 @@ const char* boxes_in(Format format) {
 // The files of a sequence's boxes. OTB has one for each target where there are several (Jogging,
 // Skating2): groundtruth_rect.1.txt and so on.
 std::vector<fs::path> files_of_boxes(Format format, const fs::path& folder) {
-  if (const fs::path file = folder / boxes_in(format); fs::exists(file)) return {file};
+  if (const fs::path file = folder / boxes_in(format); is_there(file)) return {file};
   std::vector<fs::path> files;
   if (format != Format::kOtb) return files;
   for (int target = 1;; ++target) {
     const fs::path file = folder / fmt::format("groundtruth_rect.{}.txt", target);
-    if (!fs::exists(file)) return files;
+    if (!is_there(file)) return files;
     files.push_back(file);
   }
 }
@@ -80,7 +80,7 @@ std::vector<Line> lines_of_frames(const fs::path& file) {
 // Columns beside the boxes; empty where the file does not exist.
 std::vector<double> column(const fs::path& file) {
   std::vector<double> values;
-  if (!fs::exists(file)) return values;
+  if (!is_there(file)) return values;
   for (const Line& line : lines_of_frames(file))
     for (const double value : numbers_of(line, file)) values.push_back(value);
   return values;
@@ -119,7 +119,7 @@ Box box_of_mask(const Line& line, const fs::path& file) {
 
 // "key: value" of meta_info.ini.
 std::string got10k_value(const fs::path& file, const std::string& key) {
-  if (fs::exists(file))
+  if (is_there(file))
     for (const Line& line : lines_of(file))
       if (line.text.starts_with(key + ":")) {
         const std::size_t start = line.text.find_first_not_of(' ', key.size() + 1);
@@ -179,7 +179,7 @@ class SequenceReader {
       std::tie(clip_.width, clip_.height) = *options.size;
     else if (!names.empty() && options.size_of_picture)
       std::tie(clip_.width, clip_.height) = options.size_of_picture(pictures / names.front());
-    if (format_ == Format::kVot && fs::exists(folder_ / "sequence")) {
+    if (format_ == Format::kVot && is_there(folder_ / "sequence")) {
       const auto settings = settings_of(folder_ / "sequence");
       const auto exact = label_file::rate_of(number_in(settings, "exact_fps"));
       clip_.frame_rate_hz = exact ? exact : label_file::rate_of(number_in(settings, "fps"));

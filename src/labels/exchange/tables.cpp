@@ -27,7 +27,7 @@ namespace {
 // The video of the same name beside an annotation.
 fs::path video_beside(fs::path file) {
   for (const char* extension : {".mp4", ".mkv", ".avi", ".mov", ".webm"})
-    if (file.replace_extension(extension); fs::exists(file)) return file;
+    if (file.replace_extension(extension); is_there(file)) return file;
   return {};
 }
 

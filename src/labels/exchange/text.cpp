@@ -34,6 +34,11 @@ std::optional<double> number_in(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
+bool is_there(const fs::path& file) {
+  refuse_device(file);
+  return fs::exists(file);
+}
+
 std::vector<Line> lines_of(const fs::path& file) {
   const std::string text = read_file(file);
   std::vector<Line> lines;

@@ -17,6 +17,9 @@
 // Helpers that the formats' readers and writers share.
 namespace airtruth::exchange {
 
+// True where a set has this file. Throws Error where it is a pipe or a device.
+bool is_there(const fs::path& file);
+
 // The lines of a text file, without blank lines and those that begin with '#'.
 struct Line {
   // From 1.

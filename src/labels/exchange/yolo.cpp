@@ -100,10 +100,10 @@ Stated stated_in(const fs::path& root) {
   Stated stated;
   auto& names = stated.names;
   for (const char* list : {"obj.names", kClassList})
-    if (fs::exists(root / list) && names.empty())
+    if (is_there(root / list) && names.empty())
       for (const Line& line : lines_of(root / list)) names[names.size()] = line.text;
   const fs::path file = root / "data.yaml";
-  if (!fs::exists(file)) return stated;
+  if (!is_there(file)) return stated;
   names.clear();
   try {
     YAML::Node top = YAML::Load(read_file(file, kMaxYamlBytes));
@@ -203,7 +203,7 @@ class YoloReader {
     for (auto& [stem, picture] : by_stem) {
       measure(picture, folders.pictures);
       const fs::path file = folders.labels / (stem + ".txt");
-      if (fs::exists(file))
+      if (is_there(file))
         for (const Line& line : lines_of(file)) add(line, file, picture);
       pictures.push_back(std::move(picture));
     }
