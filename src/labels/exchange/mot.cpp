@@ -69,9 +69,11 @@ class MotWriter : public FolderWriter {
   // The names of the classes, one on each line.
   std::string classes() const {
     if (!options_.mot_classes)
-      return (options_.categories.size() == 1 ? options_.categories.front() : "aircraft") + "\n";
+      return (options_.categories.size() == 1 ? one_line(options_.categories.front())
+                                              : "aircraft") +
+             "\n";
     std::string text;
-    for (const std::string& category : options_.categories) text += category + "\n";
+    for (const std::string& category : options_.categories) text += one_line(category) + "\n";
     return text;
   }
 
@@ -81,7 +83,7 @@ class MotWriter : public FolderWriter {
       for (const Label& label : frame.labels) categories.emplace(label.track, label.category);
     std::string text;
     for (const auto& [track, category] : categories)
-      text += std::to_string(track) + "," + category + "\n";
+      text += std::to_string(track) + "," + one_line(category) + "\n";
     return text;
   }
 

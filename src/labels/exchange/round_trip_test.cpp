@@ -229,6 +229,23 @@ TEST(RoundTrip, NoNameLeadsOutOfTheNewFolder) {
   }
 }
 
+// COCO's categories may hold line ends.
+TEST(RoundTrip, ACategoryIsOneLine) {
+  Clip clip;
+  clip.name = "s";
+  clip.width = 64;
+  clip.height = 48;
+  const Label label{.category = "b\n7,37", .box_px = {3, 4, 8, 5}};
+  clip.frames = {{0, std::nullopt, {label}}, {1, std::nullopt, {label}}};
+  const Folder folder;
+  const Part part{"train", {clip}};
+  for (const Format format : {Format::kMot, Format::kGot10k, Format::kVot}) {
+    const fs::path set = folder.path() / name(format);
+    write_clips(format, set, {&part, 1});
+    EXPECT_EQ(read_clips(format, set, {}, {}).at(0).frames.at(0).labels.at(0).category, "b 7,37");
+  }
+}
+
 // An import contains only boxes and tracks. Columns that a format requires are written all the same
 // and are read back as unknown.
 TEST(RoundTrip, WhatIsUnknownComesBackAsUnknown) {

@@ -458,7 +458,7 @@ class SingleObjectWriter : public FolderWriter {
 
   static std::string category_of(const Clip& clip) {
     for (const LabelledFrame& frame : clip.frames)
-      if (!frame.labels.empty()) return frame.labels.front().category;
+      if (!frame.labels.empty()) return one_line(frame.labels.front().category);
     return {};
   }
 };

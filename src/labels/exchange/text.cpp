@@ -112,6 +112,11 @@ int side_of(const std::optional<double>& value) {
   return static_cast<int>(value ? whole_in(*value, 1, label_file::kLongestSide_px).value_or(0) : 0);
 }
 
+std::string one_line(std::string text) {
+  std::ranges::replace_if(text, is_control, ' ');
+  return text;
+}
+
 std::string padded(std::int64_t number, int digits) {
   return fmt::format("{:0{}}", number, digits);
 }

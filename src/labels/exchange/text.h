@@ -58,6 +58,10 @@ std::optional<std::int64_t> whole_in(double value, std::int64_t low, std::int64_
 // The side of a picture, in pixels; 0 (unknown) where the value is missing or invalid.
 int side_of(const std::optional<double>& value);
 
+// The text with a blank for each control character: a category, which other formats let hold line
+// ends, on a line of a file.
+std::string one_line(std::string text);
+
 // A whole number with leading zeros.
 std::string padded(std::int64_t number, int digits);
 
