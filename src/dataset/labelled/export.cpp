@@ -52,9 +52,10 @@ Images images_of(const ExportOptions& options) {
   return *options.images;
 }
 
-// Changes with what a set holds: of one that was built, its record; else those of its sequences.
+// Changes with what a set holds: of one that was built and holds all that its catalogue states, its
+// record; else those of the sequences that are there.
 std::string sha256_of_set(const fs::path& set, const LabelledSet& labelled) {
-  if (const fs::path record = set / "dataset.json"; fs::exists(record))
+  if (const fs::path record = set / "dataset.json"; labelled.missing() == 0 && fs::exists(record))
     return sha256_of_file(record);
   std::string all;
   for (const std::string& name : labelled.names()) {

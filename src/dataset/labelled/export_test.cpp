@@ -212,6 +212,22 @@ TEST_F(Made, AnExportOfRendersNoticesThatOneHasChanged) {
               testing::HasSubstr("holds an export of another set"));
 }
 
+TEST_F(Made, AnExportNoticesThatASequenceIsAwayOrBack) {
+  const fs::path copy = fresh(), whole = fresh(), part = fresh();
+  fs::copy(set(), copy, fs::copy_options::recursive);
+  const ExportOptions options{.images = Images::kNone};
+  EXPECT_EQ(export_set(copy, whole, options).sequences, 4);
+  const fs::path sequence = copy / "sequences" / LabelledSet(copy).names().front();
+  const fs::path away = fresh();
+  fs::rename(sequence, away);
+  EXPECT_THROW(export_set(copy, whole, options), Error);
+  EXPECT_EQ(export_set(copy, part, options).sequences, 3);
+  EXPECT_TRUE(export_set(copy, part, options).was_there);
+  fs::rename(away, sequence);
+  EXPECT_THROW(export_set(copy, part, options), Error);
+  EXPECT_TRUE(export_set(copy, whole, options).was_there);
+}
+
 TEST_F(Made, AnExportOverSomethingElseIsRefused) {
   const auto error = [](const fs::path& out, const ExportOptions& options) -> std::string {
     return test_support::error_of([&] { export_set(set(), out, options); });
