@@ -12,14 +12,14 @@
 
 namespace airtruth::set_report {
 
-// Pictures of a sequence for the report page: frames spread over the sequence, and its intruder
-// enlarged.
+// Pictures of a sequence for the report page: frames spread over the sequence, and its aircraft
+// enlarged; of a sequence that shows none, what else it shows.
 struct Film {
   struct Marked {
     std::size_t intruder = 0;  // index in replay::intruder_ids()
     PixelBox box;
   };
-  // Its subject is the largest box.
+  // Its subject is the largest of these boxes.
   struct Still : drawing::Still {
     std::int64_t frame = 0;
     std::vector<Marked> boxes;
@@ -32,7 +32,7 @@ struct Film {
   std::string loop_jpeg;
   int loop_frames = 0;  // number of squares in loop_jpeg
   int loop_side = 0;    // side of one square, px
-  // Contrast of each frame of the loop (foundation/image/contrast_to_noise.h).
+  // Contrast of the aircraft in each frame of the loop (foundation/image/contrast_to_noise.h).
   std::vector<double> contrasts;
 };
 

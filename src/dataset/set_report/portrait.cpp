@@ -37,9 +37,11 @@ void count(const replay::Finished& finished, Portrait& portrait) {
       portrait.covered_boxes += is_aircraft && intruder.covered_box_px ? 1 : 0;
       portrait.without_box += lens && annotation::lacks_box(frame, intruder, *lens) ? 1 : 0;
       const auto shown = annotation::box_to_show(intruder);
-      is_seen = is_seen || (is_aircraft && shown);
-      if (shown) widen(portrait.size_px, std::max(shown->width, shown->height));
-      if (shown && intruder.range_m) widen(portrait.range_m, *intruder.range_m);
+      if (is_aircraft && shown) {
+        is_seen = true;
+        widen(portrait.size_px, std::max(shown->width, shown->height));
+        if (intruder.range_m) widen(portrait.range_m, *intruder.range_m);
+      }
       const auto box = labelled_box(finished, intruder);
       if (!box) continue;
       ++portrait.boxes_by_class[sequences::category_of(intruder)];

@@ -40,7 +40,7 @@ struct Portrait {
   std::map<std::string, std::int64_t> boxes_by_class;
   // Number of centres of these boxes in each cell, row by row from the top.
   std::vector<std::int64_t> centres;
-  // The least and the greatest of all frames that show an intruder: its range, and the longer side
+  // The least and the greatest of all frames that show an aircraft: its range, and the longer side
   // of its box.
   using Ends = std::optional<std::pair<double, double>>;
   Ends range_m;

@@ -94,18 +94,24 @@ TEST_F(OfALongClip, TheNearestRangeIsThatOfAllFrames) {
     if (k == 1) label.box_px.width = 30;
     if (k == 1) label.range_m = 100;
     clip.frames.push_back({k, {}, {label}});
+    // A bird is nearer and larger, and no aircraft.
+    exchange::Label bird{.track = 2, .category = "bird", .box_px = {2, 2, 40, 30}};
+    bird.object_class = "bird";
+    bird.range_m = 5;
+    clip.frames.back().labels.push_back(bird);
   }
   const fs::path folder = folder_ / "set" / "sequences" / "a";
   fs::create_directories(folder);
   write_file(folder / "labels.jsonl", exchange::labels_jsonl(clip));
   write_file(folder / "sequence.json",
-             R"({"format": "airtruth labelled clip 1", "name": "a", "frames": 241, "labels": 241,
-                 "categories": ["738"]})");
+             R"({"format": "airtruth labelled clip 1", "name": "a", "frames": 241, "labels": 482,
+                 "categories": ["738", "bird"], "distractors": ["bird"]})");
   const nlohmann::json a =
       data_of_page_of(folder_ / "set", folder_ / "page.html", 1).at("sequences").at(0);
   EXPECT_LE(a.at("intruders").at(0).at("range_m").size(), 120u);
   EXPECT_EQ(a.at("range_m"), nlohmann::json({100, 900}));
   EXPECT_EQ(a.at("size_px"), nlohmann::json({10, 30}));
+  EXPECT_EQ(a.at("stills").at(a.at("poster").get<std::size_t>()).at("frame"), 1);
 }
 
 }  // namespace
