@@ -3,9 +3,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include <fcntl.h>
-#include <sys/mman.h>
+#include <unistd.h>
 
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
@@ -33,33 +35,36 @@ std::string samples_of(const image::Picture& picture, SampleOrder samples) {
   return bytes;
 }
 
-// Memory that a program at this machine can map.
+// A file in memory that a program at this machine can map. It is not mapped here: a program that
+// shortens the file would end this process with SIGBUS.
 class SharedSamples {
  public:
   // Throws Error where it cannot be made.
-  explicit SharedSamples(std::size_t bytes) : bytes_(bytes) {
-    const int file = place_.descriptor();
-    // The blocks are taken now: a full disk is an error here, and no signal later.
-    const int failed = ::posix_fallocate(file, 0, static_cast<off_t>(bytes));
-    memory_ = failed == 0 ? ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0)
-                          : MAP_FAILED;
-    const int fault = failed != 0 ? failed : errno;
-    if (memory_ == MAP_FAILED)
+  explicit SharedSamples(std::size_t bytes) {
+    // The blocks are taken now: a full disk is an error here.
+    const int fault = ::posix_fallocate(place_.descriptor(), 0, static_cast<off_t>(bytes));
+    if (fault != 0)
       throw Error(
           std::string("cannot take memory for a detector's frames: ") + std::strerror(fault),
           {path()});
   }
-  SharedSamples(const SharedSamples&) = delete;
-  SharedSamples& operator=(const SharedSamples&) = delete;
-  ~SharedSamples() { ::munmap(memory_, bytes_); }
 
   std::string path() const { return place_.path().string(); }
-  char* data() { return static_cast<char*>(memory_); }
+  // The file is as long as the samples again, whatever the program has made of it.
+  void write(std::string_view samples) {
+    for (off_t at = 0; !samples.empty();) {
+      const ssize_t put = ::pwrite(place_.descriptor(), samples.data(), samples.size(), at);
+      if (put < 0 && errno == EINTR) continue;
+      if (put < 0)
+        throw process::Failure(std::string("has a file of frames that cannot be written: ") +
+                               std::strerror(errno));
+      at += put;
+      samples.remove_prefix(static_cast<std::size_t>(put));
+    }
+  }
 
  private:
   MemoryPlace place_{PlaceKind::kFile, "a detector's frames"};
-  std::size_t bytes_;
-  void* memory_ = nullptr;
 };
 
 class External : public Detector {
@@ -91,7 +96,7 @@ class External : public Detector {
       if (child_->read_if_there()) throw process::Failure("answered before it was asked");
       const std::string samples = samples_of(*frame.picture, hello_.samples);
       const auto deadline = process::in(limits_.answer_s);
-      if (shared_) std::memcpy(shared_->data(), samples.data(), samples.size());
+      if (shared_) shared_->write(samples);
       child_->write(frame_line(frame, samples.size()), deadline);
       if (!shared_) child_->write(samples, deadline);
       detections = detections_of(child_->read(deadline), frame.index);

@@ -148,6 +148,18 @@ TEST(External, GetsItsFramesInSharedMemory) {
             "");
 }
 
+TEST(External, ThatShortensTheFileOfItsFramesGetsTheNextOneWhole) {
+  EXPECT_EQ(
+      fault_of(
+          R"(echo '{"hello":{"protocol":1,"samples":"gray","frames":"shared_memory"}}'; read -r line
+      f=${line#*shared_memory\":\"}; f=${f%%\"*}
+      while read -r line; do case "$line" in
+        '{"frame":'*) [ $(wc -c < "$f") = 768 ] || exit 5; : > "$f"
+          k=${line#*:}; k=${k%%,*}; echo "{\"frame\":$k,\"detections\":[]}";;
+        *) exit 0;; esac; done)"),
+      "");
+}
+
 // The program answers with the first of the samples as a place.
 TEST(External, GreyOfRedGreenAndBlueIsTheirLuma) {
   image::Picture colour =
