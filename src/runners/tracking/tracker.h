@@ -37,7 +37,7 @@ class Tracker {
  public:
   virtual ~Tracker() = default;
   // Converts a frame to the form that this tracker needs (grey, RGB). This time does not count as
-  // the tracker's.
+  // the tracker's. Throws process::Failure as update() does.
   virtual void load(const image::Picture& picture) = 0;
   // Starts the tracker on the loaded frame; a second call starts it anew. Throws Error for a box
   // that has no area or lies outside the picture, and process::Failure as update() does.

@@ -306,6 +306,9 @@ TEST(TraxTracker, ThatGoesWrongSaysHow) {
   EXPECT_THAT(fault_of(answering(R"(printf '@@TRAX:state 1,2,3,4\n@@TRAX:state 1,2,3,4\n')")),
               StartsWith("answered before it was asked"));
   EXPECT_THAT(hang_of("exec sleep 60 # never says hello"), HasSubstr("in time"));
+  EXPECT_THAT(
+      fault_of(answering(R"(f=${line#*file://}; rm -r "${f%/*}"; echo '@@TRAX:state 1,2,3,4')")),
+      StartsWith("cannot be given a picture: "));
   // It reads nothing: a picture in the message fills the pipe.
   EXPECT_THAT(hang_of("echo '@@TRAX:hello trax.version=3 trax.image=memory'; exec sleep 60"),
               HasSubstr("in time"));

@@ -154,7 +154,14 @@ class TraxTracker : public Tracker {
 
   void load(const image::Picture& picture) override {
     picture_ = &picture;
-    if (child_) image_ = images_->hand_over(picture);
+    if (!child_) return;
+    guarded([&] {
+      try {
+        image_ = images_->hand_over(picture);
+      } catch (const Error& error) {  // as of a tracker that removes the folder of its pictures
+        throw process::Failure(std::string("cannot be given a picture: ") + error.what());
+      }
+    });
   }
 
   void init(const Box& box) override {
