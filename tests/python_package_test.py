@@ -444,6 +444,8 @@ class Numbers(unittest.TestCase):
         self.assertAlmostEqual(result.average_overlap, ious[1:].mean())
         self.assertEqual(result.success.shape, (21,))
         self.assertEqual(evaluate.mean_of([result, result]).counted, 80)
+        late = evaluate.score([[np.nan] * 4, [10, 10, 20, 10]], [[10, 10, 20, 10], [20, 10, 20, 10]])
+        self.assertAlmostEqual(evaluate.mean_of([late]).average_overlap, 1 / 3)
         self.assertEqual(pickle.loads(pickle.dumps(result)).auc, result.auc)
 
     def test_intervals_of_average_precision_need_two_sequences(self):

@@ -79,6 +79,9 @@ struct Score {
   // Mean, as in OTB and GOT-10k.
   std::optional<double> frames_per_second;
   std::optional<double> frames_per_second_median;
+
+  // Number of frames after the first that show the target: those of GOT-10k's measures.
+  std::int64_t counted_after_first = 0;
 };
 
 // Scores the frames of one sequence, in order. width and height are those of the picture; 0:

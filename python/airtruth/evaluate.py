@@ -45,6 +45,7 @@ class Score:
     success_75: Optional[float]
     frames_per_second: Optional[float]
     frames_per_second_median: Optional[float]
+    counted_after_first: int  # frames after the first that show the target: those of GOT-10k's measures
 
 
 @dataclass(eq=False)

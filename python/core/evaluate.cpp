@@ -59,6 +59,7 @@ void each_field(Visit&& visit, S& s) {
   visit("success_75", s.success_75);
   visit("frames_per_second", s.frames_per_second);
   visit("frames_per_second_median", s.frames_per_second_median);
+  visit("counted_after_first", s.counted_after_first);
 }
 
 py::dict score_dict(const Score& score) {

@@ -95,6 +95,7 @@ struct Overlaps {
     ++count;
   }
   void write(Score& score) const {
+    score.counted_after_first = count;
     if (count == 0) return;
     const double n = static_cast<double>(count);
     score.average_overlap = sum / n;
@@ -170,6 +171,7 @@ Score mean_of(std::span<const Score> scores) {
     if (s.counted == 0) continue;
     mean.frames += s.frames;
     mean.counted += s.counted;
+    mean.counted_after_first += s.counted_after_first;
     n += 1;
     for (std::size_t k = 0; k < mean.success.size(); ++k) mean.success[k] += s.success[k];
     for (std::size_t k = 0; k < mean.precision.size(); ++k) {

@@ -171,6 +171,21 @@ TEST(Mean, WeighsSequencesForOtbAndFramesForGot) {
   EXPECT_DOUBLE_EQ(mean.auc.value(), (20.0 / 21 + 20.0 / 21 / 11) / 2);
   EXPECT_DOUBLE_EQ(mean.average_overlap.value(), 2.0 / 12);
   EXPECT_EQ(mean.counted, 14);
+  // A mean has the weight of its 12 frames.
+  EXPECT_DOUBLE_EQ(mean_of(std::vector<Score>{mean, scores[0]}).average_overlap.value(), 4.0 / 14);
+}
+
+// Four frames of an overlap of a third after a first frame without the target, and ten of 1.
+TEST(Mean, WeighsAllFramesOfASequenceWhoseFirstHasNoTarget) {
+  const Box truth{0, 0, 10, 10};
+  std::vector<FramePair> late(5, {truth, Box{5, 0, 10, 10}, 0});
+  late.front().truth.reset();
+  const std::vector<FramePair> exact(11, {truth, truth, 0});
+  const std::vector<Score> scores = {score(late, 0, 0), score(exact, 0, 0)};
+  EXPECT_DOUBLE_EQ(mean_of(scores).average_overlap.value(), (4.0 / 3 + 10) / 14);
+  const FramePair one{truth, Box{5, 0, 10, 10}, 0};
+  const Score short_one = score(std::vector<FramePair>{{std::nullopt, truth, 0}, one}, 0, 0);
+  EXPECT_DOUBLE_EQ(mean_of({&short_one, 1}).average_overlap.value(), 1.0 / 3);
 }
 
 }  // namespace

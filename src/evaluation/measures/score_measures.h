@@ -14,9 +14,8 @@ struct ScoreMeasure {
   // Sequences are weighted by their frames, as for GOT-10k's measures.
   bool weighs_by_frames = false;
 
-  // The first frame, which GOT-10k omits, always shows the target.
   double weight_of(const evaluation::Score& score) const {
-    return weighs_by_frames ? static_cast<double>(score.counted - 1) : 1.0;
+    return weighs_by_frames ? static_cast<double>(score.counted_after_first) : 1.0;
   }
 };
 
