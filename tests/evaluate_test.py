@@ -263,8 +263,8 @@ def check_ranges_and_speed(run_airtruth, place):
     write(place + "/mine/multistart/a", "a_00000000.txt", lines([1] + truth[1:], ""))
     run_airtruth("dataset", "import", place + "/csv", "-f", "csv", "--size", f"{WIDTH}x{HEIGHT}", "-o", place + "/set")
 
-    def evaluated(*options):
-        done = run_airtruth("evaluate", place + "/set", place + "/mine", "--no-page", "-o", place + "/evaluation", *options)
+    def evaluated(*options, results=place + "/mine"):
+        done = run_airtruth("evaluate", place + "/set", results, "--no-page", "-o", place + "/evaluation", *options)
         if done.returncode != 0:
             sys.exit(f"evaluate_test: {options}: {done.stderr}")
         with open(place + "/evaluation/evaluation.json", encoding="utf-8") as file:
@@ -285,6 +285,15 @@ def check_ranges_and_speed(run_airtruth, place):
         _, tracker, warnings = evaluated("--eao-range", str(low), str(high))
         if warnings.count("runs ends at 59") != 2 or (tracker["restart"]["eao"], tracker["multistart"]["eao"]) != (restart, multistart):
             sys.exit(f"evaluate_test: --eao-range {low} {high}: {tracker['restart']['eao']} {tracker['multistart']['eao']} {warnings}")
+    # GOT-10k's repetitions: exact, half a width beside (an overlap of a third), and far away, with a column of times each.
+    for k, shift in enumerate((0, 10, 200)):
+        write(place + "/got/a", f"a_{k + 1:03d}.txt", lines([(b[0] + shift, *b[1:]) for b in truth], ""))
+    write(place + "/got/a", "a_time.txt", "0.5,0.25,1\n" * length)
+    _, tracker, _ = evaluated(results=place + "/got")
+    wanted = {"average_overlap": 4 / 9, "success_50": 1 / 3, "success_75": 1 / 3, "frames_per_second": 7 / 3}
+    off = [d for part in (tracker["overall"], tracker["sequences"][0]) for d in differences(part, wanted, "repetitions")]
+    if off:
+        sys.exit(f"evaluate_test: {off}")
     for name in ("a.txt", "a_time.txt"):
         os.remove(os.path.join(place, "mine", name))
     _, tracker, _ = evaluated()  # VOT's runs alone

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <set>
 #include <span>
@@ -33,23 +34,39 @@ constexpr std::size_t kMinStillsOfOne = 4;
 const std::vector<double> kSizeEdges_px = {0, 5, 10, 15, 20, 30, 40, 60, 80, 120, 200, 400};
 const std::vector<double> kContrastEdges = {0, 4, 8, 12, 16, 24, 32, 48, 64, 96};
 
-void add_one_pass(const TruthClip& truth,
-                  const results::TrackerResults::OnePass& run,
-                  bool until_loss,
-                  ScoredSequence& scored) {
+// Returns the score of a run. The first run's answers are those of the sequence.
+Score add_one_pass(const TruthClip& truth,
+                   const results::TrackerResults::OnePass& run,
+                   bool until_loss,
+                   ScoredSequence& scored) {
   std::vector<FramePair> pairs;
   for (std::size_t i = 0; i < run.frames.size(); ++i)
     pairs.push_back({truth.box(i), run.frames[i].box, run.seconds[i]});
   const auto lost = evaluation::first_loss(pairs);
   if (until_loss && lost)
     for (std::size_t i = *lost; i < pairs.size(); ++i) pairs[i].seconds = 0;
-  scored.score = evaluation::score(pairs, truth.clip.width, truth.clip.height);
-  scored.outcomes = measures::outcomes(pairs, truth.lens ? &*truth.lens : nullptr);
-  for (const FramePair& pair : pairs) scored.answers.push_back(pair.answer);
-  if (lost) {
-    const exchange::LabelledFrame& frame = truth.clip.frames[*lost];
-    scored.loss = {frame.frame, truth.clip.time_s_of(frame), truth.range_m(*lost)};
+  std::ranges::copy(measures::outcomes(pairs, truth.lens ? &*truth.lens : nullptr),
+                    std::back_inserter(scored.outcomes));
+  if (scored.answers.empty()) {
+    for (const FramePair& pair : pairs) scored.answers.push_back(pair.answer);
+    if (lost) {
+      const exchange::LabelledFrame& frame = truth.clip.frames[*lost];
+      scored.loss = {frame.frame, truth.clip.time_s_of(frame), truth.range_m(*lost)};
+    }
   }
+  return evaluation::score(pairs, truth.clip.width, truth.clip.height);
+}
+
+// Of several runs the mean, in which GOT-10k's measures are over the frames of all.
+void add_one_passes(const TruthClip& truth,
+                    const results::TrackerResults& results,
+                    bool until_loss,
+                    ScoredSequence& scored) {
+  if (!results.one_pass) return;
+  std::vector<Score> scores = {add_one_pass(truth, *results.one_pass, until_loss, scored)};
+  for (const auto& run : results.further_passes)
+    scores.push_back(add_one_pass(truth, run, until_loss, scored));
+  scored.score = scores.size() == 1 ? scores.front() : evaluation::mean_of(scores);
 }
 
 // The names of the truths of which any run was made of other content.
@@ -200,7 +217,7 @@ ScoredTracker scored_tracker(const Assessment& about,
     ScoredSequence scored;
     scored.truth = i;
     scored.name = truth.clip.name;
-    if (results.one_pass) add_one_pass(truth, *results.one_pass, about.until_loss, scored);
+    add_one_passes(truth, results, about.until_loss, scored);
     if (!results.restart.empty()) {
       restarts.push_back({results::vot_truth(truth.clip), results.restart});
       scored.restart = evaluation::restart_score({&restarts.back(), 1}, about.eao_range);

@@ -28,10 +28,11 @@ struct FirstLoss {
 struct ScoredSequence {
   std::size_t truth = 0;  // index in Assessment::truths
   std::string name;
-  std::vector<std::optional<Box>> answers;  // answers of the one-pass run; empty without one
+  // Of the one-pass run, of several the first; empty without one.
+  std::vector<std::optional<Box>> answers;
   std::optional<evaluation::Score> score;
   std::vector<measures::Outcome> outcomes;
-  std::optional<FirstLoss> loss;
+  std::optional<FirstLoss> loss;  // of several runs the first's
   std::optional<evaluation::Restart> restart;
   std::optional<evaluation::MultiStart> multistart;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -65,8 +66,8 @@ Trajectory read_trajectory(const fs::path& file, int origin_px, TrackerResults& 
 }
 
 // 0 where there is no file, and for a blank line, which VOT's toolkit writes for a frame without a
-// time. Of several columns (GOT-10k's repetitions) the first is read.
-std::vector<double> read_times(const fs::path& file, std::size_t frames) {
+// time. GOT-10k's repetitions have a column each.
+std::vector<double> read_times(const fs::path& file, std::size_t frames, std::size_t column = 0) {
   std::vector<double> seconds(frames, 0);
   if (!fs::exists(file)) return seconds;
   const std::vector<exchange::Line> filled = exchange::lines_of(file);
@@ -79,7 +80,7 @@ std::vector<double> read_times(const fs::path& file, std::size_t frames) {
   for (std::size_t i = 0; i < filled.size(); ++i) {
     const std::vector<double> numbers = exchange::numbers_of(filled[i], file);
     const std::size_t at = has_blanks ? static_cast<std::size_t>(filled[i].number - 1) : i;
-    if (!numbers.empty()) seconds[at] = numbers.front();
+    if (column < numbers.size()) seconds[at] = numbers[column];
   }
   return seconds;
 }
@@ -227,6 +228,18 @@ bool is_anchor_name(const fs::path& file, const std::string& sequence) {
   return file.stem().string().size() == sequence.size() + 1 + kAnchorDigits;
 }
 
+// SEQUENCE.txt, or else GOT-10k's repetitions.
+std::vector<fs::path> one_pass_files(const fs::path& folder, const std::string& sequence) {
+  const fs::path own = folder / (sequence + ".txt");
+  if (fs::exists(own)) return {own};
+  if (!fs::is_directory(folder / sequence)) return {};
+  std::vector<fs::path> files = files_with(folder / sequence, ".txt");
+  std::erase_if(files, [&](const fs::path& file) {
+    return !number_of(file, sequence) || is_anchor_name(file, sequence);
+  });
+  return files;
+}
+
 // Where a run has both files, the text file is read, as in the toolkit.
 std::vector<fs::path> vot_files(const fs::path& folder) {
   std::vector<fs::path> files = files_with(folder, ".txt");
@@ -341,15 +354,16 @@ TrackerResults read_results(const fs::path& folder,
                             int origin_px,
                             std::int64_t first_place) {
   TrackerResults results;
-  const fs::path own = folder / (clip.name + ".txt");
-  const fs::path got10k = folder / clip.name / (clip.name + "_001.txt");
-  const fs::path& file = fs::exists(own) ? own : got10k;
-  if (fs::exists(file)) {
+  std::vector<TrackerResults::OnePass> passes;
+  for (const fs::path& file : one_pass_files(folder, clip.name)) {
     const fs::path times = file.parent_path() / (clip.name + "_time.txt");
-    results.one_pass =
-        TrackerResults::OnePass{one_pass_run(file, clip, origin_px, first_place, results),
-                                read_times(times, clip.frames.size())};
+    passes.push_back({one_pass_run(file, clip, origin_px, first_place, results),
+                      read_times(times, clip.frames.size(), passes.size())});
     add_source(file, results);
+  }
+  if (!passes.empty()) {
+    results.one_pass = std::move(passes.front());
+    results.further_passes.assign(std::next(passes.begin()), passes.end());
   }
   for (const char* place : kVotPlaces)
     add_vot_runs(folder / place / clip.name, clip, origin_px, results);

@@ -26,8 +26,8 @@
 //   .../SEQUENCE_001_time.value               their seconds
 //   .../RUN.run.json                          beside each run, what it was made of
 // What others write is read as well: VOT's folder "baseline" in place of the last two, its binary
-// runs (SEQUENCE_001.bin, vot_regions.h) and times with blank lines, GOT-10k's
-// SEQUENCE/SEQUENCE_001.txt, and MOTChallenge's SEQUENCE.txt.
+// runs (SEQUENCE_001.bin, vot_regions.h) and times with blank lines, GOT-10k's repetitions
+// SEQUENCE/SEQUENCE_001.txt, ... with a column of times each, and MOTChallenge's SEQUENCE.txt.
 namespace airtruth::results {
 
 enum class Protocol { kOnePass, kRestart, kMultiStart };
@@ -62,6 +62,7 @@ struct TrackerResults {
     std::vector<double> seconds;  // of each frame; 0 where no time exists
   };
   std::optional<OnePass> one_pass;
+  std::vector<OnePass> further_passes;  // GOT-10k's repetitions after the first
   std::vector<evaluation::Trajectory> restart;
   std::vector<evaluation::AnchorRun> multistart;
   // Boxes with a width or height below 0, which are answers without a box, and the first's place.

@@ -127,6 +127,27 @@ TEST(Times, BlankLinesAreFramesWithoutATime) {
   EXPECT_THAT(fault_of(vot), HasSubstr("a_001_time.value: has 2 lines; its results have 6"));
 }
 
+TEST(Repetitions, OfGot10kAreAllReadWithAColumnOfTimesEach) {
+  const ResultsFolder folder;
+  const auto write = [&](const std::string& name, const std::string& line) {
+    std::string text;
+    for (int i = 0; i < 6; ++i) text += line + "\n";
+    folder.file("a/" + name, text);
+  };
+  write("a_002.txt", "2,1,9,9");
+  write("a_009.txt", "9,1,9,9");
+  write("a_time.txt", "0.5,0.25");
+  write("a_00000000.txt", "7,1,9,9");  // named as a run from an anchor is
+  const TrackerResults read = read_results(folder.path(), clip(), 0);
+  ASSERT_EQ(read.further_passes.size(), 1U);
+  EXPECT_EQ(read.one_pass->frames.at(5).box, (Box{2, 1, 9, 9}));
+  EXPECT_EQ(read.one_pass->seconds, std::vector<double>(6, 0.5));
+  EXPECT_EQ(read.further_passes[0].frames.at(5).box, (Box{9, 1, 9, 9}));
+  EXPECT_EQ(read.further_passes[0].seconds, std::vector<double>(6, 0.25));
+  folder.file("a.txt", "1,2,3,4\n1,2,3,4\n1,2,3,4\n1,2,3,4\n1,2,3,4\n1,2,3,4\n");
+  EXPECT_TRUE(read_results(folder.path(), clip(), 0).further_passes.empty());
+}
+
 void expect_the_six(const Trajectory& run) {
   ASSERT_EQ(run.size(), 6u);
   EXPECT_EQ(run[0].mark, Mark::kBegun);
