@@ -55,7 +55,7 @@ class Counts {
     point.detection = statistics::proportion_of(clusters);
     const double alarms = false_alarms_at(score);
     const auto rate = [&](double per) { return per > 0 ? alarms / per : 0; };
-    point.false_alarms_per_image = rate(images_);
+    point.false_alarms_per_image = false_alarms_per_image_at(score);
     point.false_alarms_per_hour = rate(hours_);
     point.false_alarms_per_flight = rate(static_cast<double>(sequences_.size()));
     return point;
@@ -69,10 +69,12 @@ class Counts {
     return scores;
   }
   double false_alarms_at(double score) const { return count_at(all_.false_alarms, score); }
+  double false_alarms_per_image_at(double score) const {
+    return images_ > 0 ? false_alarms_at(score) / images_ : 0;
+  }
   double found_share_at(double score) const {
     return all_.trials > 0 ? count_at(all_.found, score) / all_.trials : 0;
   }
-  double images() const { return images_; }
   double hours() const { return hours_; }
 
  private:
@@ -130,10 +132,9 @@ std::optional<double> score_at_false_alarms(std::span<const FrocSequence> sequen
                                             double per_image) {
   const Counts counts(sequences);
   const std::vector<double> scores = counts.scores();
-  const double most = per_image * counts.images();
   // False alarms grow as the score falls.
   const auto beyond = std::partition_point(scores.begin(), scores.end(), [&](double score) {
-    return counts.false_alarms_at(score) <= most;
+    return counts.false_alarms_per_image_at(score) <= per_image;
   });
   if (beyond == scores.begin()) return std::nullopt;
   return *std::prev(beyond);

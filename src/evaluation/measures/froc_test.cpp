@@ -41,6 +41,13 @@ TEST(Froc, TheScoreOfARate) {
   alarm_first.false_alarm_scores = {7};
   EXPECT_FALSE(score_at_false_alarms(std::vector<FrocSequence>{alarm_first}, 0.5));
   EXPECT_FALSE(score_at_false_alarms({}, 0.5));
+  // In 100 images N false alarms are N / 100 an image, also where N / 100 * 100 is not N, as of 29.
+  for (int alarms = 1; alarms <= 100; ++alarms) {
+    FrocSequence many{.images = 100};
+    many.false_alarm_scores.assign(static_cast<std::size_t>(alarms - 1), 0.6);
+    many.false_alarm_scores.push_back(0.5);
+    EXPECT_EQ(score_at_false_alarms(std::vector{many}, alarms / 100.), 0.5) << alarms;
+  }
   EXPECT_NEAR(froc_at(sequences, 5).false_alarms_per_image, 0.1, 1e-12);
 }
 
