@@ -41,6 +41,9 @@ struct ScoredBox {
 struct ScoredImage {
   std::vector<LabelledBox> truths;
   std::vector<ScoredBox> detections;
+  // COCO's. Detections of equal score are taken in the order of the images: of these numbers, where
+  // all images have one.
+  std::optional<std::int64_t> image_id;
 };
 
 // How a detection resembles a truth: overlap (intersection over union), or distance of the centres,

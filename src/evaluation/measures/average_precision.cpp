@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include <airtruth/average_precision.h>
 #include <airtruth/metrics.h>
@@ -105,8 +106,14 @@ void add_image(const ScoredImage& image,
 Ranking ranking_of(std::span<const ImageList> sequences, const PrecisionOptions& options) {
   Ranking ranking;
   ranking.truths.resize(sequences.size());
+  std::vector<std::pair<const ScoredImage*, std::size_t>> images;
   for (std::size_t s = 0; s < sequences.size(); ++s)
-    for (const ScoredImage& image : sequences[s]) add_image(image, options, s, ranking);
+    for (const ScoredImage& image : sequences[s]) images.emplace_back(&image, s);
+  const auto id = [](const auto& image) { return image.first->image_id; };
+  if (std::ranges::all_of(
+          images, [](const auto& number) { return number.has_value(); }, id))
+    std::ranges::stable_sort(images, {}, id);
+  for (const auto& [image, s] : images) add_image(*image, options, s, ranking);
   std::ranges::stable_sort(ranking.detections, std::greater(), &Ranked::score);
   return ranking;
 }

@@ -51,6 +51,19 @@ TEST(AveragePrecision, CrowdsTakeAnyNumberAndCountNeitherWay) {
   EXPECT_NEAR(ap_of(image), 0.5, 1e-9);
 }
 
+TEST(AveragePrecision, EqualScoresGoByTheNumbersOfTheImages) {
+  std::vector<ScoredImage> images = {{{{kFirst}}, {{kFirst, 0.5}}}, {{}, {{kNowhere, 0.5}}}};
+  const auto ap = [&] { return precision_curve(images, {})->average_precision; };
+  EXPECT_NEAR(ap(), 1, 1e-9);
+  images[0].image_id = 2;
+  EXPECT_NEAR(ap(), 1, 1e-9);
+  images[1].image_id = 1;
+  EXPECT_NEAR(ap(), 0.5, 1e-9);
+  // Of several sequences together.
+  const std::vector<std::vector<ScoredImage>> apart = {{images[0]}, {images[1]}};
+  EXPECT_NEAR(average_precision(apart, 10).ap_50.value(), 0.5, 1e-9);
+}
+
 TEST(AveragePrecision, AreasSelectTruthsAndUnmatchedDetections) {
   // A truth of 40 x 40 is medium. Of small ones there is none; a small false detection does not
   // count for medium.

@@ -39,6 +39,7 @@ std::vector<evaluation::ScoredImage> images_of(const TruthSequence& truth,
                                                const ScoredDetections& scored) {
   std::vector<evaluation::ScoredImage> images(scored.matches.size());
   for (std::size_t i = 0; i < images.size(); ++i) {
+    images[i].image_id = truth.frames[i].image_id;
     for (const TruthObject& object : truth.frames[i].objects)
       if (object.is_aircraft())
         images[i].truths.push_back({object.box_px, !object.counts, false, object.area_px});
