@@ -136,6 +136,7 @@ PrecisionCurve curve_of(const Ranking& ranking, std::span<const double> weights)
   for (const Ranked& one : ranking.detections) {
     const double weight = weights[one.sequence];
     if (weight == 0) continue;
+    if (hits + alarms == 0) curve.score[0] = one.score;  // any detection reaches a recall of 0
     (one.is_true ? hits : alarms) += weight;
     if (one.is_true)
       points.push_back({hits / truths,
@@ -153,7 +154,7 @@ PrecisionCurve curve_of(const Ranking& ranking, std::span<const double> weights)
     if (at == points.size()) break;
     const auto k = static_cast<std::size_t>(i);
     curve.precision[k] = points[at].precision;
-    curve.score[k] = points[at].score;
+    if (i > 0) curve.score[k] = points[at].score;
     sum += points[at].precision;
   }
   curve.average_precision = sum / kRecallSteps;

@@ -51,6 +51,19 @@ TEST(AveragePrecision, CrowdsTakeAnyNumberAndCountNeitherWay) {
   EXPECT_NEAR(ap_of(image), 0.5, 1e-9);
 }
 
+// As cocoeval.py's eval["scores"]: numpy.searchsorted of a recall of 0 is the first detection.
+TEST(AveragePrecision, TheFirstDetectionReachesARecallOf0) {
+  ScoredImage image{{{kFirst}}, {{kNowhere, 0.9}, {kFirst, 0.5}}};
+  const auto curve = precision_curve({&image, 1}, {}).value();
+  EXPECT_EQ(curve.score[0], 0.9);
+  EXPECT_EQ(curve.score[1], 0.5);
+  EXPECT_EQ(curve.precision[0], curve.precision[1]);
+  image.detections.pop_back();
+  EXPECT_EQ(precision_curve({&image, 1}, {})->score[0], 0.9);
+  image.detections.clear();
+  EXPECT_EQ(precision_curve({&image, 1}, {})->score[0], 0);
+}
+
 TEST(AveragePrecision, EqualScoresGoByTheNumbersOfTheImages) {
   std::vector<ScoredImage> images = {{{{kFirst}}, {{kFirst, 0.5}}}, {{}, {{kNowhere, 0.5}}}};
   const auto ap = [&] { return precision_curve(images, {})->average_precision; };
