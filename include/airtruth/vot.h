@@ -111,9 +111,10 @@ struct Anchor {
 };
 AIRTRUTH_API std::vector<Anchor> anchors_of(const VotTruth& truth, int step);
 
-// The range of lengths over which EAO is averaged for a data set: the narrowest range that holds
-// half of a Gaussian kernel density of the sequences' lengths (Silverman's width, at least 1
-// frame), as in VOT2015. For no sequence the range is empty.
+// The range of lengths over which EAO is averaged for a data set. It grows from the mode of a
+// Gaussian kernel density of the sequences' lengths (Silverman's width, at least 1 frame) by a
+// length at a time to the denser side until it holds half of the density, as in VOT's toolkit of
+// 2015. Of several modes it need not be the narrowest that does. For no sequence it is empty.
 AIRTRUTH_API std::pair<int, int> eao_range(std::span<const std::int64_t> lengths);
 
 // The range clipped to the extent of the curves of runs of at most `longest` frames. The curves end
