@@ -805,6 +805,14 @@ class Mined(unittest.TestCase):
         self.check(self.mine("sky", min_score=0.93), [7])
         self.assertEqual(len(self.mine("sky", every=1, count=None).alarms), 30)
 
+    def test_words_of_aircraft_are_alarms_and_other_classes_are_not(self):
+        pathlib.Path("words.py").write_text("\n".join((
+            "import sys", f"sys.path.insert(0, {os.path.join(SOURCE, 'clients')!r})", "from airtruth_detector import Server, detection",
+            "server = Server()", "for frame in server:",
+            "    server.reply([detection((10 + 30 * k, 20, 5, 5), 0.9, word) for k, word in enumerate(sys.argv[1:])])")))
+        mined = airtruth.mine("sky", detector=f"exec:{sys.executable} words.py airplane Aeroplanes bird drone aircraft", frame_rate_hz=25)
+        self.assertEqual(sorted(alarm.box[0] for alarm in mined.alarms), [10, 40, 130])
+
     def test_what_moves_is_one_thing_by_its_track(self):
         write_sky("moving", [(40 + k, 60, 200 + k) for k in range(30)])
         self.assertEqual([alarm.frame for alarm in self.mine("moving").alarms], [29])

@@ -11,6 +11,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _core
 from ._error import Error
 from ._frames import Frame, Numbers, Samples
 from ._program import run_from
@@ -141,7 +142,7 @@ def _found(results: pathlib.Path) -> Numbers:
     rows = np.array([line.split(",")[:7] for line in lines], float).reshape(-1, 7)
     rows[:, [0, 2, 3]] -= 1  # MOTChallenge counts from 1
     categories = json.loads(text.with_suffix(".json").read_text(encoding="utf-8")).get("categories")
-    counts: NDArray[np.bool_] = np.array([category == "aircraft" for category in categories or ["aircraft"] * len(rows)], bool)
+    counts: NDArray[np.bool_] = np.array([_core.claims_aircraft(category) for category in categories or ["aircraft"] * len(rows)], bool)
     return rows[counts]
 
 
@@ -181,7 +182,8 @@ def mine(
     by its highest score; what is at one place of the picture, or on one track as of `airtruth detect --associate`, is one thing.
     `count`: at most so many alarms, those of the highest scores; None: all. `min_score`: only those of so high a score. `lens`: a calibration
     as of Lens.from_file(), which makes tracks better. `mask`: a picture that is black where the own aircraft is; what a detector finds
-    there does not count. `frame_rate_hz`: of numbered pictures, which state none.
+    there does not count. `frame_rate_hz`: of numbered pictures, which state none. A detection that its detector calls by another class, as "bird" or
+    "drone", is no alarm; all other words are an aircraft's (docs/detection-measures.md).
     `progress` as in run().
 
     The video must not show an aircraft: it would be learned as background. airtruth.Error for a file that cannot be read, for an unknown

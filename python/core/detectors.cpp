@@ -275,6 +275,8 @@ py::tuple ranks(const py::list& sequences, std::optional<double> rate_hz, double
 
 void bind_detectors(py::module_& core) {
   core.def("froc", named(&froc_dict, "sequences", "rate_hz", "centre_px"));
+  core.def("claims_aircraft",
+           [](const std::string& category) { return claims_aircraft(category); });
   core.def("hota", named(&hota_dict, "sequences", "centre_px"));
   core.def("aot",
            named(&aot, "sequences", "rate_hz", "centre_px", "min_score", "min_track_frames"));

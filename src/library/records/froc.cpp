@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <string>
+
 #include <airtruth/froc.h>
 
 #include "evaluation/scores/detection_match.h"
@@ -52,6 +54,10 @@ std::vector<bool> counts_neither_way(const ScoredImage& image, double centre_px)
   for (const scores::Match& match : one.scored.matches[0])
     result.push_back(match.kind == scores::MatchKind::kIgnored);
   return result;
+}
+
+bool claims_aircraft(std::string_view category) {
+  return scores::claims_aircraft(std::string(category), {});
 }
 
 }  // namespace airtruth::evaluation

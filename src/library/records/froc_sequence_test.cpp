@@ -28,5 +28,12 @@ TEST(FrocSequence, HoldsTheBestScoreOfEachAircraftAndWhatFindsNothing) {
   EXPECT_FALSE(froc_sequence(std::vector{image}, 0, 11).best_scores[1] == std::nullopt);
 }
 
+TEST(ClaimsAircraft, AsAllWordsDoThatNameNothingElse) {
+  for (const char* word : {"aircraft", "Airplane", "aeroplanes", "helicopter", "738", "kite", ""})
+    EXPECT_TRUE(claims_aircraft(word)) << word;
+  for (const char* word : {"bird", "Drones", "UAV", "balloon", "insect", "ignored region"})
+    EXPECT_FALSE(claims_aircraft(word)) << word;
+}
+
 }  // namespace
 }  // namespace airtruth::evaluation
