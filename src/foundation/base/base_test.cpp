@@ -43,6 +43,9 @@ TEST(Error, SaysThePlaceThenTheFact) {
   EXPECT_STREQ(error.what(), "scene.toml:12:3: is -1; expected a positive number");
   EXPECT_EQ(error.message(), "is -1; expected a positive number");
   EXPECT_STREQ(Error("no place").what(), "no place");
+  // A NUL, as in a cell of a foreign file, ends neither the text nor the name.
+  const Error quoting(std::string_view("'8.5\0' is no number", 19), {{'a', '\0', 'b'}, 2});
+  EXPECT_STREQ(quoting.what(), "a?b:2: '8.5?' is no number");
 }
 
 TEST(Words, StandBetweenBlanks) {

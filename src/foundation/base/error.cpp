@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/base/error.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace airtruth {
@@ -22,8 +23,16 @@ std::string to_string(const Where& where) {
   return text;
 }
 
+std::string without_nul(std::string_view text) {
+  std::string shown(text);
+  std::ranges::replace(shown, '\0', '?');
+  return shown;
+}
+
 Error::Error(std::string_view message, Where where)
-    : std::runtime_error(with_place(message, where)), message_(message), where_(std::move(where)) {}
+    : std::runtime_error(without_nul(with_place(message, where))),
+      message_(without_nul(message)),
+      where_(std::move(where)) {}
 
 Error::~Error() = default;
 

@@ -11,6 +11,7 @@
 #include <sys/types.h>
 
 #include "foundation/base/descriptor.h"
+#include "foundation/base/error.h"
 #include "foundation/base/unfinished.h"
 
 namespace airtruth::process {
@@ -23,7 +24,7 @@ Clock::time_point in(double seconds);
 // violated its protocol; its network failed. The text goes on after the runner's name.
 class Failure : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit Failure(std::string_view what) : std::runtime_error(without_nul(what)) {}
 };
 
 // How long a runner's process may take, in seconds, and what ends every wait for it.

@@ -299,6 +299,8 @@ TEST(TraxTracker, ThatGoesWrongSaysHow) {
   EXPECT_THAT(fault_of(answering("echo '@@TRAX:state over there'")), HasSubstr("2 regions"));
   EXPECT_THAT(fault_of(answering("echo '@@TRAX:state somewhere'")),
               StartsWith("sent 'somewhere', which is no number"));
+  EXPECT_THAT(fault_of(answering(R"(printf '@@TRAX:state \0x\n')")),
+              StartsWith("sent '?x', which is no number"));
   EXPECT_THAT(fault_of(answering("echo '@@TRAX:hello'")), HasSubstr("no state"));
   EXPECT_THAT(fault_of(answering("echo '@@TRAX:quit \"trax.reason=tired\"'")),
               StartsWith("quit: tired"));
