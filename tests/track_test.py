@@ -2,6 +2,7 @@
 """airtruth track over data sets, where a folder holds results already or sequences have names alike: python3 track_test.py AIRTRUTH"""
 
 import os
+import re
 import shutil
 
 import program
@@ -42,6 +43,16 @@ class Kept(program.Case):
         self.assertNotIn("other content", warnings())
         os.remove(path("of-anew", "opencv-kcf", "one.run.json"))  # as an older airtruth left it
         self.assertIn("2 were there", track().stdout)
+
+    def test_a_box_outside_of_its_picture_breaks_its_own_run_off_alone(self):
+        imported("otb", "otb", "outside")
+        labels = "outside/sequences/one/labels.jsonl"
+        write(labels, re.sub(r'"box_px":\[[^]]*\]', '"box_px":[9000,9000,20,14]', read(labels)))
+        for protocol in ("ope", "restart"):
+            done = run("track", "outside", "-t", "opencv-kcf", "--protocol", protocol, "--repetitions", "1", "-o", "of-outside")
+            self.assertEqual((done.returncode, done.stderr.count("on one: the tracker cannot begin: ")), (1, 1), done.stderr)
+            self.assertIn("one/labels.jsonl: the first box has no area within the picture", done.stderr)
+            self.assertIn("1 runs tracked", done.stdout)
 
     def test_a_run_without_its_times_is_not(self):
         imported("otb", "otb", "set")

@@ -16,6 +16,7 @@
 
 #include "dataset/catalogue/expand.h"
 #include "dataset/labelled/labelled_set.h"
+#include "dataset/sequences/layout.h"
 #include "evaluation/matching/boxes.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
@@ -43,6 +44,12 @@ using evaluation::Trajectory;
 // Number of frames from a failure to the next start (VOT2013).
 constexpr std::int64_t kSkip = 5;
 
+// What the runs of a sequence are made of.
+struct Origin {
+  fs::path truth;  // the file that states its boxes, or its folder
+  Json record;
+};
+
 // One run of a tracker, with its answers and its times. A tracker that fails breaks the run off.
 class Follower {
  public:
@@ -51,13 +58,17 @@ class Follower {
     options_.seed = seed;
   }
 
-  // Starts the tracker on a picture.
-  void begin(const image::Picture& picture, const Box& box) {
+  // Starts the tracker on a picture. `truth` is the file that states the box.
+  void begin(const image::Picture& picture, const Box& box, const fs::path& truth) {
     guarded([&] {
       if (!tracker_) tracker_ = tracking::make_tracker(command_, options_);
       tracker_->load(picture);
       const Stopwatch watch;
-      tracker_->init(box);
+      try {
+        tracker_->init(box);
+      } catch (const Error& error) {
+        throw process::Failure("cannot begin: " + truth.string() + ": " + error.what());
+      }
       seconds_ = watch.seconds();
     });
   }
@@ -148,7 +159,9 @@ class TrackerRun {
     expect_clear(set, names);
     open_folder();
     in_parallel(names.size(), options_, [&](std::size_t i) {
-      const Json origin = {{results::kSourceSha256, set.sha256_of(names[i])}};
+      const fs::path folder = set.folder(names[i]);
+      const Origin origin{set.is_imported(names[i]) ? folder / sequences::kLabels : folder,
+                          {{results::kSourceSha256, set.sha256_of(names[i])}}};
       for (const exchange::Clip& clip :
            exchange::arranged(exchange::Format::kOtb, set.clip(names[i])))
         follow(clip, origin);
@@ -175,7 +188,7 @@ class TrackerRun {
     open_folder();
     if (fs::exists(file)) expect_begun_at(init, file);
     if (is_there(file, results::Protocol::kOnePass, origin)) return summary_;
-    follower.begin(*picture, init);
+    follower.begin(*picture, init, "--init");
     follower.add(Mark::kAnswer, init);
     for (std::int64_t i = first_frame + 1;
          !follower.is_broken() && (picture = frames.at(i)) != nullptr;
@@ -315,7 +328,7 @@ class TrackerRun {
                                  follower.negative_boxes()));
   }
 
-  void follow(const exchange::Clip& clip, const Json& origin) {
+  void follow(const exchange::Clip& clip, const Origin& origin) {
     if (clip.media.empty()) throw Error(clip.name + " has no video");
     video::NumberedFrames frames(clip.media, options_.warn);
     switch (options_.protocol) {
@@ -343,10 +356,10 @@ class TrackerRun {
                    video::NumberedFrames& frames,
                    const evaluation::Anchor& anchor,
                    results::Protocol protocol,
-                   const Json& origin) {
+                   const Origin& origin) {
     const fs::path file =
         results::trajectory_file(summary_.folder, protocol, clip.name, anchor.frame);
-    if (is_there(file, protocol, origin)) return;
+    if (is_there(file, protocol, origin.record)) return;
     Follower follower(command_, options_, options_.seed);
     const std::int64_t way = anchor.is_backward ? -1 : 1;
     for (std::int64_t i = anchor.frame;
@@ -355,7 +368,7 @@ class TrackerRun {
       const auto at = static_cast<std::size_t>(i);
       if (i == anchor.frame) {
         const Box box = *results::box_of(clip.frames[at]);
-        follower.begin(picture_of(frames, clip, at), box);
+        follower.begin(picture_of(frames, clip, at), box, origin.truth);
         const bool marks = protocol == results::Protocol::kMultiStart;
         follower.add(marks ? Mark::kBegun : Mark::kAnswer, box);
       } else {
@@ -363,16 +376,16 @@ class TrackerRun {
         follower.add(Mark::kAnswer, box);
       }
     }
-    write(file, protocol, clip.name, follower, origin);
+    write(file, protocol, clip.name, follower, origin.record);
   }
 
   void follow_with_restarts(const exchange::Clip& clip,
                             video::NumberedFrames& frames,
                             int repetition,
-                            const Json& origin) {
+                            const Origin& origin) {
     const fs::path file = results::trajectory_file(
         summary_.folder, results::Protocol::kRestart, clip.name, repetition);
-    if (is_there(file, results::Protocol::kRestart, origin)) return;
+    if (is_there(file, results::Protocol::kRestart, origin.record)) return;
     Follower follower(
         command_, options_, options_.seed + static_cast<std::uint64_t>(repetition) - 1);
     bool is_begun = false;
@@ -385,7 +398,7 @@ class TrackerRun {
         continue;
       }
       if (!is_begun) {
-        follower.begin(picture_of(frames, clip, i), *truth);
+        follower.begin(picture_of(frames, clip, i), *truth, origin.truth);
         follower.add(Mark::kBegun, {});
         is_begun = true;
         continue;
@@ -398,7 +411,7 @@ class TrackerRun {
       is_begun = !failed;
       if (failed) skip = kSkip - 1;
     }
-    write(file, results::Protocol::kRestart, clip.name, follower, origin);
+    write(file, results::Protocol::kRestart, clip.name, follower, origin.record);
   }
 
   const TrackOptions& options_;
