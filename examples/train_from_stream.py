@@ -13,7 +13,7 @@ def loader_of(video, fov, seed, length):
               "background": [{"name": "own", "video": video, "lens": {"vertical_fov_deg": fov}, "motion": {"model": "none"},
                               "realism": {"auto": True, "fallback": True},
                               "camera": {"position_ned_m": [0, 0, -500], "velocity_ned_mps": [40, 0, 0]}}],
-              "random": [{"count": 1, "aircraft": ["738/*", "c172/*"], "size_px": [12, 60], "azimuth_deg": [-fov / 2, fov / 2],
+              "random": [{"aircraft": ["738/*", "c172/*"], "size_px": [12, 60], "azimuth_deg": [-fov / 2, fov / 2],
                           "elevation_deg": [-fov / 3, fov / 3], "negatives": 0.2}]}
     data = airtruth.torch.Dataset(airtruth.Stream(stream, seed=seed), length, channels="gray", dtype="float32")
     return torch.utils.data.DataLoader(data, batch_size=16, num_workers=2, collate_fn=airtruth.torch.collate)

@@ -30,26 +30,31 @@ std::int64_t chosen_before(const std::string& what,
 }
 
 // The place of a sequence among those of its rule that are like it: with an intruder, or without.
+// A stream goes on after the rule's count, by strata of their own for every `count` sequences.
 struct Turn {
   std::uint64_t place = 0;
   std::uint64_t of = 1;
   bool is_negative = false;
+  std::uint64_t round = 0;
 
   // The strata of a quantity, of which each place has `each`.
   pairing::Strata strata(const Seed& seed, const std::string& what, std::uint64_t each = 1) const {
-    return {seed.stream(what + (is_negative ? " without an intruder" : ""))(), of * each, 1};
+    return {seed.stream(what + (is_negative ? " without an intruder" : ""), round)(), of * each, 1};
   }
 };
 
 Turn turn_of(const Drawn& rule, std::uint64_t seed, std::int64_t index) {
-  const std::string what = "negatives of " + rule.name;
-  const std::int64_t place = index % rule.count;
-  const std::int64_t before = chosen_before(what, rule.negatives, seed, place);
-  const std::int64_t negatives = chosen_before(what, rule.negatives, seed, rule.count);
-  const bool is_negative = chosen_before(what, rule.negatives, seed, place + 1) > before;
-  return {static_cast<std::uint64_t>(is_negative ? before : place - before),
+  const std::int64_t first = index - index % rule.count;  // of the round
+  const auto chosen = [&](std::int64_t end) {
+    return chosen_before("negatives of " + rule.name, rule.negatives, seed, end);
+  };
+  const std::int64_t before = chosen(index) - chosen(first);
+  const std::int64_t negatives = chosen(first + rule.count) - chosen(first);
+  const bool is_negative = chosen(index + 1) > chosen(index);
+  return {static_cast<std::uint64_t>(is_negative ? before : index - first - before),
           static_cast<std::uint64_t>(is_negative ? negatives : rule.count - negatives),
-          is_negative};
+          is_negative,
+          static_cast<std::uint64_t>(index / rule.count)};
 }
 
 // The types take turns; the fraction of one number selects the livery.

@@ -99,6 +99,28 @@ Catalogue with_weather(const std::string& keys) {
   return parse_catalogue(text + "[[random]]\naircraft = [\"c172/*\"]\n" + keys, "c.toml");
 }
 
+// A stream does not end with the count: types are even in each `count` samples, and every sample
+// has a weather of its own.
+TEST(Drawing, CountDoesNotBoundWhatAStreamDraws) {
+  for (const std::int64_t count : {1, 2}) {
+    const Catalogue catalogue = with_random(
+        "count = " + std::to_string(count) +
+        "\naircraft = [\"738/*\", \"c172/*\"]\n[random.weather]\nvisibility_m = [2000, 32000]\n");
+    int c172 = 0;
+    std::set<double> visibilities_m;
+    for (std::int64_t i = 0; i < kMany; ++i) {
+      const DrawnSequence drawn = draw(rule_of(catalogue), catalogue.backgrounds, 1, i);
+      c172 += drawn.encounters[0].aircraft.starts_with("c172/") ? 1 : 0;
+      visibilities_m.insert(*drawn.visibility_m);
+      if (count == 2 && i % 2 == 1) {
+        EXPECT_EQ(c172, (i + 1) / 2);
+      }
+    }
+    EXPECT_NEAR(c172, kMany / 2.0, 5 * std::sqrt(kMany / 4.0));
+    EXPECT_EQ(visibilities_m.size(), static_cast<std::size_t>(kMany));
+  }
+}
+
 // Of n sequences each n-th of a range holds one: McKay's Latin hypercube. What cannot be 0 is cut
 // in its logarithm. So it is of the sequences with an intruder, and of those without.
 TEST(Drawing, WeatherIsStratified) {

@@ -72,7 +72,8 @@ class Expansion {
 struct StreamPlace {
   std::size_t background = 0;
   std::int64_t first_frame = 0;
-  // Of the item in its rule; indices in a row are stratified as the rule's sequences.
+  // Of the item in its rule. Every `count` of them from the first on are stratified as the rule's
+  // sequences.
   std::int64_t index = 0;
 };
 Item stream_item(const Catalogue& catalogue,
