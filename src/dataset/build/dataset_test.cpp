@@ -396,6 +396,27 @@ TEST_F(Build, ABackgroundThatLosesItsMaskUnderABuildIsRefused) {
               HasSubstr("sky.mp4: has not the masks with which 'sky-across-c172'"));
 }
 
+// No sequence is there yet that states what it was made of.
+TEST_F(Build, AFlightThroughAnotherLensFileIsRefused) {
+  std::string text = test_support::kCatalogue;
+  const std::string stated = "vertical_fov_deg = 75";
+  text.replace(text.find(stated), stated.size(), "file = \"lens.json\"");
+  const catalogue::Catalogue catalogue = catalogue::parse_catalogue(text, root_ / "c.toml");
+  const auto error_through = [&](const std::string& focal_px) {
+    write_file(root_ / "lens.json",
+               "{\"calib_dimension\": {\"w\": 160, \"h\": 120}, \"fisheye_params\": {"
+               "\"camera_matrix\": [[" +
+                   focal_px + ",0,80],[0," + focal_px +
+                   ",60],[0,0,1]], \"radial_distortion_limit\": 2.5, \"distortion_coeffs\": "
+                   "[0.06, 0.01, -0.01, 0.004]}}");
+    return test_support::error_of([&] { build_set(catalogue, root_ / "set", one_alone()); });
+  };
+  EXPECT_EQ(error_through("80"), "no error");
+  fs::remove_all(root_ / "set" / "sequences" / "sky-across-c172");
+  EXPECT_THAT(error_through("160"), HasSubstr("sky.mp4: was flown through another lens than"));
+  EXPECT_EQ(error_through("80"), "no error");
+}
+
 TEST_F(Build, AnInputIsAnotherOneByItsBytesAndNotByItsEnding) {
   setup::SharedInputs inputs;
   const fs::path log = root_ / "log.txt";  // a list of pictures has the same ending

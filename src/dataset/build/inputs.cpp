@@ -41,9 +41,20 @@ catalogue::BackgroundFiles fly(const catalogue::Background& background,
                                const BuildOptions& options) {
   const fs::path stem = folder.backgrounds() / background.name;
   catalogue::BackgroundFiles files = files_of_flight(background, folder);
+  const std::string lens = sha256_of_flight_lens(background);
+  const fs::path kept_lens = stem.string() + ".lens.sha256";
   // The video is the last file that appears.
-  if (fs::exists(files.video)) return files;
+  if (fs::exists(files.video)) {
+    if (fs::exists(kept_lens) && read_file(kept_lens) != lens)
+      throw Error(
+          "was flown through another lens than " + background.lens.file->string() +
+              " states now (its SHA-256 differs); expected that lens, or another folder for "
+              "the set",
+          {files.video.string()});
+    return files;
+  }
   fs::create_directories(folder.backgrounds());
+  if (!lens.empty()) write_file(kept_lens, lens);
   const synthetic::Flight flight(flight_over(background, wanted));
   write_file(stem.string() + ".csv", synthetic::csv_from_flight(flight));
   video::write_still(*files.mask, insertion::picture_of(flight.own_aircraft()));
@@ -60,6 +71,12 @@ catalogue::BackgroundFiles files_of_flight(const catalogue::Background& backgrou
                                            const catalogue::Folder& folder) {
   const std::string stem = folder.backgrounds() / background.name;
   return {.video = stem + ".mp4", .mask = stem + ".mask.png"};
+}
+
+std::string sha256_of_flight_lens(const catalogue::Background& background) {
+  if (!std::holds_alternative<synthetic::FlightOptions>(background.source) || !background.lens.file)
+    return "";
+  return sha256_of_file(*background.lens.file);
 }
 
 catalogue::BackgroundFiles prepare(const catalogue::Background& background,

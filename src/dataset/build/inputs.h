@@ -16,9 +16,14 @@ namespace airtruth::build {
 catalogue::BackgroundFiles files_of_flight(const catalogue::Background& background,
                                            const catalogue::Folder& folder);
 
+// The SHA-256 of the lens file of a virtual flight: with the text of the catalogue it decides the
+// flight. "" for a flight without one, and for a video.
+std::string sha256_of_flight_lens(const catalogue::Background& background);
+
 // Returns the files of a background: an existing video, or a virtual flight, which is made where it
 // does not exist yet. A flight's files appear whole or not at all. Two processes that make the same
-// flight at the same time write the same bytes.
+// flight at the same time write the same bytes. Throws Error for a flight that was made through
+// another lens file.
 catalogue::BackgroundFiles prepare(const catalogue::Background& background,
                                    const catalogue::Folder& folder,
                                    const BuildOptions& options);

@@ -20,6 +20,7 @@
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/seed.h"
+#include "foundation/disk_cache/disk_cache.h"
 #include "foundation/image/contrast_to_noise.h"
 #include "foundation/image/layer.h"
 #include "labels/annotation/object_class.h"
@@ -85,6 +86,7 @@ struct Stream::State {
     if (!clip) {
       const catalogue::Background& stated = catalogue.backgrounds[background];
       const bool is_flight = std::holds_alternative<synthetic::FlightOptions>(stated.source);
+      const catalogue::Folder folder = flights(stated);
       if (is_flight && !options.use_cache)
         throw Error("background '" + stated.name +
                         "' is a virtual flight, which a stream makes in the cache; expected a "
@@ -95,9 +97,8 @@ struct Stream::State {
       // One of a training's workers makes a flight, the others find it.
       std::optional<WaitingLock> lock_of_flight;
       if (is_flight)
-        lock_of_flight.emplace(flights().backgrounds() / ("." + stated.name + ".lock"),
-                               options.stop);
-      clip = Clip{build::prepare(stated, flights(), how), {}};
+        lock_of_flight.emplace(folder.backgrounds() / ("." + stated.name + ".lock"), options.stop);
+      clip = Clip{build::prepare(stated, folder, how), {}};
       scene::Scene scene = catalogue::scene_over(catalogue, background);
       scene.background.video = clip->files.video;
       clip->info = pipeline::open_background(scene, options).info();
@@ -105,10 +106,11 @@ struct Stream::State {
     return *clip;
   }
 
-  // Virtual flights are made once for all streams of the same catalogue.
-  catalogue::Folder flights() const {
-    return catalogue::Folder(pipeline::cache_folder(options, "flights") /
-                             sha256_of(catalogue.text).substr(0, 16));
+  // A virtual flight is made once for all streams of the same catalogue and lens.
+  catalogue::Folder flights(const catalogue::Background& background) const {
+    const auto key =
+        disk_cache::Key("flight").add(catalogue.text).add(build::sha256_of_flight_lens(background));
+    return catalogue::Folder(pipeline::cache_folder(options, "flights") / key.name().substr(0, 16));
   }
 
   Planned planned(std::int64_t index) const {

@@ -220,6 +220,30 @@ TEST_F(StreamOfFlights, WorkersThatNeedTheSameFlightAtOnceMakeItOnce) {
   for (std::size_t k = 1; k < samples.size(); ++k) expect_same(samples[k].get(), first);
 }
 
+// The text of the catalogue is the same with another lens in its file.
+TEST_F(StreamOfFlights, AFlightIsThatOfItsLensFile) {
+  const std::string text =
+      "[[background]]\nname = \"made\"\nflight = { seed = 5, frame_count = 24, width = 160, "
+      "height = 120 }\nlens = { file = \"lens.json\" }\n";
+  const auto catalogue = catalogue_of(text + kRule + "[stream]\npicture = \"frame\"\n");
+  const auto sample = [&](const std::string& focal_px, const char* cache) {
+    write_file(folder_->path() / "lens.json",
+               "{\"calib_dimension\": {\"w\": 160, \"h\": 120}, \"fisheye_params\": {"
+               "\"camera_matrix\": [[" +
+                   focal_px + ",0,80],[0," + focal_px +
+                   ",60],[0,0,1]], \"radial_distortion_limit\": 2.5, \"distortion_coeffs\": "
+                   "[0.06, 0.01, -0.01, 0.004]}}");
+    pipeline::Options how = options();
+    how.use_cache = true;
+    how.cache = folder_->path() / cache;
+    return Stream(catalogue, 7, how).sample(0);
+  };
+  const Sample wide = sample("80", "lens_cache");
+  const Sample narrow = sample("160", "lens_cache");
+  EXPECT_FALSE(image::identical(narrow.frames[0].picture, wide.frames[0].picture));
+  expect_same(narrow, sample("160", "empty_cache"));
+}
+
 TEST_F(StreamOfFlights, AShareOfSamplesIsAsOtherCamerasShowThem) {
   const std::string text = background("flight3") + kRule + "[stream]\nsize_px = [64, 64]\n";
   const Stream own = stream_of(text);
