@@ -195,6 +195,31 @@ class Slurm(unittest.TestCase):
             self.assertFalse(os.path.exists(path(name)))
 
 
+class Clips(unittest.TestCase):
+    """Random sequences over videos of other programs."""
+
+    def truths(self, name, video, keys):
+        """The frames of each sequence of a set of six."""
+        subprocess.run(["ffmpeg", "-nostdin", "-v", "error", "-y", *video.split(), path(name)], check=True)
+        table = f'[[background]]\nname = "clip"\nvideo = "{name}"\nlens = {{ vertical_fov_deg = 75 }}\nmotion = {{ model = "none" }}\n'
+        write(name + ".toml", table + keys + "azimuth_deg = [-5, 5]\nelevation_deg = [-5, 5]\n" + '[output]\nvideo = "mkv"\n')
+        done = run("dataset", "build", path(name + ".toml"), "--out", path(name + ".set"))
+        self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
+        folder = path(name + ".set", "sequences")
+        found = []
+        for sequence in sorted(os.listdir(folder)):
+            with open(os.path.join(folder, sequence, "truth.jsonl")) as file:
+                found.append([json.loads(line) for line in file])
+        self.assertEqual(len(found), 6)
+        return found
+
+    def test_random_starts_lie_within_the_picture_where_the_sound_is_longer(self):
+        video = "-f lavfi -i testsrc2=s=160x120:r=25:d=0.8 -f lavfi -i sine=d=4 -c:v libx264 -c:a aac"
+        keys = '[[random]]\ncount = 6\nframe_count = 5\nstart = "random"\naircraft = ["c172/news"]\nsize_px = [8, 12]\n'
+        for frames in self.truths("sound.mkv", video, keys):
+            self.assertEqual(len(frames), 5)
+
+
 class Sets(unittest.TestCase):
     """Sequences with several intruders and with none, through everything that reads a data set."""
 

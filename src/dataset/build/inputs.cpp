@@ -87,9 +87,13 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
       flight != nullptr ? fly(background, *flight, folder, options)
                         : catalogue::BackgroundFiles{.video = std::get<fs::path>(background.source),
                                                      .mask = background.mask};
-  take_facts(video::Reader(files.video, {.picture_rate_hz = background.frame_rate_hz, .threads = 1})
-                 .info(),
-             files);
+  video::Reader reader(files.video, {.picture_rate_hz = background.frame_rate_hz, .threads = 1});
+  take_facts(reader.info(), files);
+  // A clip may begin at any frame that is there: an estimate may be of the sound's length.
+  if (!reader.info().is_frame_count_stated && reader.next()) {
+    const auto shown_s = reader.times_s(end_of(background, video::kAllFrames));
+    if (!shown_s.empty()) files.frames = std::ssize(shown_s);
+  }
   files.frames = end_of(background, files.frames);
   files.camera = camera_with_log(background, files.video);
   if (files.camera) {
