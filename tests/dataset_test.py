@@ -219,6 +219,16 @@ class Clips(unittest.TestCase):
         for frames in self.truths("sound.mkv", video, keys):
             self.assertEqual(len(frames), 5)
 
+    def test_what_is_drawn_over_a_variable_rate_flies_to_the_end(self):
+        video = "-f lavfi -i testsrc2=s=160x120:r=25:d=6 -vf select='lt(n,100)+not(mod(n,5))' -fps_mode vfr -c:v libx264"
+        keys = ('first_frame = 98\n[[distractor]]\nkind = "balloon"\n[[random]]\ncount = 6\nframe_count = 12\n'
+                'aircraft = ["c172/news"]\nsize_px = [12, 12]\n')
+        for frames in self.truths("variable.mp4", video, keys):
+            self.assertAlmostEqual(frames[-1]["time_s"], 0.04 * 2 + 0.2 * 9, places=6)
+            self.assertNotIn("ended", [thing["state"] for frame in frames for thing in frame["intruders"]])
+            boxes = [thing["exact_box_px"] for frame in frames for thing in frame["intruders"] if thing["aircraft"] == "c172/news"]
+            self.assertLess(min(abs(max(box[2:]) - 12) for box in boxes if box), 0.01)
+
 
 class Sets(unittest.TestCase):
     """Sequences with several intruders and with none, through everything that reads a data set."""

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -89,10 +90,12 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
                                                      .mask = background.mask};
   video::Reader reader(files.video, {.picture_rate_hz = background.frame_rate_hz, .threads = 1});
   take_facts(reader.info(), files);
-  // A clip may begin at any frame that is there: an estimate may be of the sound's length.
-  if (!reader.info().is_frame_count_stated && reader.next()) {
-    const auto shown_s = reader.times_s(end_of(background, video::kAllFrames));
+  // A clip may begin at any frame that is there, and an estimate may be of the sound's length.
+  const video::StreamInfo& info = reader.info();
+  if ((!info.is_frame_count_stated || info.variable_frame_rate) && reader.next()) {
+    std::vector<double> shown_s = reader.times_s(end_of(background, video::kAllFrames));
     if (!shown_s.empty()) files.frames = std::ssize(shown_s);
+    if (!video::are_of_rate(shown_s, files.frame_rate_hz)) files.times_s = std::move(shown_s);
   }
   files.frames = end_of(background, files.frames);
   files.camera = camera_with_log(background, files.video);

@@ -320,6 +320,16 @@ TEST_F(EncounterModel, ViewsEndWithTheBackground) {
   }
 }
 
+// 120 frames at 60 a second and 120 at five, which the average of the rate does not tell.
+TEST_F(EncounterModel, AClipOfAVariableRateIsAsLongAsItsFramesSay) {
+  const Catalogue catalogue = with("kind = \"geometric\"\ncount = 1\n");
+  BackgroundFiles files = kFilesOfSky;
+  for (int k = 0; k < 240; ++k) files.times_s.push_back(k < 120 ? k / 60.0 : 2 + (k - 120) / 5.0);
+  Item item = Expansion(catalogue).at(0);
+  EXPECT_THAT(test_support::error_of([&] { place(item, catalogue, files); }),
+              HasSubstr("240 frames at 9.29 a second are 25.8 s"));
+}
+
 TEST_F(EncounterModel, WhatIsNeverInViewIsCounted) {
   const Catalogue catalogue = with("kind = \"geometric\"\ncount = 3\nvmd_m = 50000\n");
   const build::Plan plan = build::plan_of(catalogue, {}, {});

@@ -145,17 +145,21 @@ Item item_of(const Catalogue& catalogue, const EncounterRule& rule, std::int64_t
   return item;
 }
 
-// A clip must not outlast the tracks of its encounter.
+// A clip must not outlast the tracks of its encounter. A sample of a stream shows a part of them,
+// wherever that is over its background.
 void check_length(const Item& item, const BackgroundFiles& files) {
   if (item.encounter_rule == nullptr || files.frame_rate_hz <= 0) return;
-  const double clip_s = static_cast<double>(item.frame_count) / files.frame_rate_hz;
+  DrawnClip clip{item.frame_count, files.frame_rate_hz};
+  if (!item.first_frame && !files.times_s.empty())
+    clip = clip_over(files, item.scene.background.first_frame, item.frame_count);
+  const double clip_s = clip.duration_s();
   if (clip_s > item.encounter_rule->length_s)
     throw Error(
         fmt::format("{}: {} frames at {:.3g} a second are {:.1f} s; encounters are drawn for "
                     "{:.0f} s, expected 24 frames a second or more",
                     files.video.string(),
-                    item.frame_count,
-                    files.frame_rate_hz,
+                    clip.frames,
+                    static_cast<double>(clip.frames) / clip_s,
                     clip_s,
                     double(item.encounter_rule->length_s)),
         item.scene.background.where);
@@ -259,6 +263,17 @@ std::int64_t clip_frames(const Item& item,
   return item.frame_count > 0 ? std::min(item.frame_count, left) : left;
 }
 
+DrawnClip clip_over(const BackgroundFiles& files, std::int64_t first_frame, std::int64_t frames) {
+  const std::int64_t left = files.frames - first_frame;
+  if (left > 0) frames = frames > 0 ? std::min(frames, left) : left;
+  DrawnClip clip{frames,
+                 files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz,
+                 {files.width, files.height}};
+  if (first_frame < std::ssize(files.times_s))
+    clip.times_s = std::span(files.times_s).subspan(static_cast<std::size_t>(first_frame));
+  return clip;
+}
+
 Draws draw_in_view(Item& item, const Catalogue& catalogue, const BackgroundFiles& files) {
   if (files.camera) item.scene.camera = *files.camera;
   setup::take_pixel_shape(item.scene.lens, {files.width, files.height}, files.pixel_aspect);
@@ -288,14 +303,13 @@ void place(Item& item,
   draw_in_view(item, catalogue, files);
   if (!item.first_frame && item.has_random_start())
     placed.first_frame = random_first_frame(item, background.first_frame, files);
-  DrawnClip clip{item.frame_count,
-                 files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz,
-                 {files.width, files.height}};
+  DrawnClip clip = clip_over(files, placed.first_frame, item.frame_count);
   const std::int64_t left = files.frames - placed.first_frame;
   if (background.frame_count && left > 0)
     placed.frame_count = std::min(placed.frame_count.value_or(left), left);
-  if (left > 0) clip.frames = clip.frames > 0 ? std::min(clip.frames, left) : left;
   if (clip.frames == 0) clip.frames = kProvisionalFrames;
+  // A sample of a stream shows a part of an encounter, wherever that is over its background.
+  if (item.first_frame && item.rule != nullptr && item.rule->approach) clip.times_s = {};
   if (item.rule != nullptr)
     for (std::size_t k = 0; k < item.drawn.encounters.size(); ++k)
       meet(item.scene.intruders[k], item.scene, item.drawn.encounters[k], clip, shared);

@@ -16,6 +16,8 @@ class SharedInputs;
 
 namespace airtruth::catalogue {
 
+struct DrawnClip;
+
 // The files of a background on this machine, and the facts of its video.
 struct BackgroundFiles {
   fs::path video;
@@ -28,6 +30,8 @@ struct BackgroundFiles {
   // Of a background with a flight log: its camera with the time of first_frame on the video's clock
   // and, where neither the scene nor the log states an attitude, a level one.
   std::optional<scene::Camera> camera;
+  // When each of the frames is shown, from the first on, where the rate varies; else empty.
+  std::vector<double> times_s;
 };
 
 // One sequence of a catalogue.
@@ -97,6 +101,10 @@ scene::Scene scene_over(const Catalogue& catalogue, std::size_t background);
 std::int64_t clip_frames(const Item& item,
                          const Catalogue& catalogue,
                          const BackgroundFiles& files);
+
+// The clip of so many frames from one of the background's on, or fewer where the background ends;
+// 0: of an unknown number.
+DrawnClip clip_over(const BackgroundFiles& files, std::int64_t first_frame, std::int64_t frames);
 
 // Gives an item's scene the camera and the pixels' shape of its background, and draws the intruders
 // of a sequence of [[encounter_model]] for the size, rate and number of the background's pictures,

@@ -35,8 +35,8 @@ constexpr int kMaxTurnSteps = 100'000;
 // moment is the time of a frame, so that the truth of that frame has the size.
 double meeting_s(const Encounter& encounter, const DrawnClip& clip) {
   if (!encounter.size_px) return encounter.meeting_share * clip.duration_s();
-  return std::floor(encounter.meeting_share * static_cast<double>(clip.frames)) /
-         clip.frame_rate_hz;
+  return clip.time_s(
+      static_cast<std::int64_t>(encounter.meeting_share * static_cast<double>(clip.frames)));
 }
 
 Vector3 direction_in_world(const Encounter& encounter, const Quaternion& world_from_camera_body) {

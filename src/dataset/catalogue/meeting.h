@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "camera/lens/lens.h"
 #include "dataset/catalogue/drawing.h"
@@ -19,8 +20,18 @@ struct DrawnClip {
   std::int64_t frames = 0;
   double frame_rate_hz = 30;
   lens::ImageSize size{};  // 0: unknown
+  // When its frames are shown, on any clock, where the rate varies; else empty.
+  std::span<const double> times_s{};
 
-  double duration_s() const { return static_cast<double>(frames) / frame_rate_hz; }
+  // Of a frame that the clip has, from its first.
+  double time_s(std::int64_t frame) const {
+    return times_s.empty() ? static_cast<double>(frame) / frame_rate_hz
+                           : times_s[static_cast<std::size_t>(frame)] - times_s.front();
+  }
+  double duration_s() const {
+    return times_s.empty() ? static_cast<double>(frames) / frame_rate_hz
+                           : time_s(frames - 1) + 1 / frame_rate_hz;
+  }
 };
 
 // Returns intruder k (from 0) of a sequence with id, aircraft and speed; it has no path yet.

@@ -299,10 +299,11 @@ void Planner::keep_part_in_view(catalogue::Item& item, Random random) const {
                      : frames[static_cast<std::size_t>(share * static_cast<double>(frames.size()))];
   begin_later(item.scene, static_cast<double>(first) / files.frame_rate_hz);
   item.scene.background.frame_count = catalogue_.stream.frames;
-  catalogue::lay_distractors(item.scene,
-                             item.distractors,
-                             {catalogue_.stream.frames, files.frame_rate_hz, size},
-                             &shared_);
+  catalogue::lay_distractors(
+      item.scene,
+      item.distractors,
+      catalogue::clip_over(files, item.scene.background.first_frame, catalogue_.stream.frames),
+      &shared_);
 }
 
 }  // namespace airtruth::stream
