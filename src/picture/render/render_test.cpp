@@ -271,6 +271,30 @@ TEST(Render, WhatTheFrameCutsOffIsCounted) {
   EXPECT_NEAR(layer.areas[0].alone_px, 3600, 80);
 }
 
+// A plate of 60 px crosses the left (upper) border at 1000 px/s. Row y of 200 is read at 0.1 s
+// (y / 200 - 1/2), when the edge of the plate's rows 10 to 70 is at y / 2 - 40: in the mean 20 px
+// without. An exposure of 0.1 s takes an edge from 50 px without to 50 px within: 12.5 px.
+TEST(Render, WhatTheFrameCutsOffHasTheTimesOfItsRowsAndOfTheExposure) {
+  const lens::Lens lens = pinhole(300);
+  const shade::Model model(plate(10, 100));
+  const auto cut_px = [&](const Shutter& shutter, double middle_px, bool moves_down) {
+    View view = view_through(lens);
+    view.shutter = shutter;
+    const auto aslant = [&](double along, double across) {
+      return moves_down ? Vector3(0, across, along) : Vector3(0, along, across);
+    };
+    Instance passing{&model, {Quaternion::Identity(), aslant((middle_px - 100) / 3, -20)}, 0};
+    passing.twist.velocity_mps = aslant(1000.0 / 3, 0);
+    const Box search = moves_down ? Box{9, -52, 62, 164} : Box{-52, 9, 164, 62};
+    const image::Layer layer = render(view, white(), {passing}, {search});
+    EXPECT_NEAR(layer.areas[0].alone_px, 3600, 80);
+    return layer.areas[0].alone_px - layer.areas[0].alone_in_frame_px;
+  };
+  EXPECT_NEAR(cut_px({.readout_s = 0.1, .readout = Readout::kDown}, 40, false), 60 * 20, 80);
+  EXPECT_NEAR(cut_px({.readout_s = 0.1, .readout = Readout::kRight}, 40, true), 60 * 20, 80);
+  EXPECT_NEAR(cut_px({.exposure_s = 0.1}, 30, false), 60 * 12.5, 80);
+}
+
 struct Stand {
   fleet::Aircraft aircraft;
   shade::Model model;

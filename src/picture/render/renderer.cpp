@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -203,7 +204,8 @@ RenderedPixel trace_pixel(const View& view,
   return pixel;
 }
 
-// The area in pixels that an instance covers outside the frame, within its search box.
+// The area in pixels that an instance covers outside the frame, within its search box. What lies
+// beside the frame has the time of its own row (column), or else of the nearest.
 double area_outside(const View& view, const PlacedInstance& placed, const Box& search) {
   // Samples along each side of the search box.
   constexpr int kSide = 64;
@@ -213,18 +215,31 @@ double area_outside(const View& view, const PlacedInstance& placed, const Box& s
   const double x1 = std::min(search.right(), view.width + limit);
   const double y1 = std::min(search.bottom(), view.height + limit);
   if (x0 >= 0 && y0 >= 0 && x1 <= view.width && y1 <= view.height) return 0;
-  const Then now(view, 0, placed);
-  std::vector<double> rows(kSide, 0.0);
-  tbb::parallel_for(0, kSide, [&](int row) {
+  const Shutter& shutter = view.shutter;
+  const bool is_by_column = shutter.readout == Readout::kRight || shutter.readout == Readout::kLeft;
+  const auto sample = [&](int line, int place) -> Pixel {
+    const auto [column, row] = is_by_column ? std::pair(line, place) : std::pair(place, line);
+    return {x0 + (column + 0.5) * (x1 - x0) / kSide, y0 + (row + 0.5) * (y1 - y0) / kSide};
+  };
+  std::vector<double> lines(kSide, 0.0);
+  tbb::parallel_for(0, kSide, [&](int line) {
+    const Pixel first = sample(line, 0);
+    const Pixel inside(std::clamp(first.x(), 0.0, view.width - 1.0),
+                       std::clamp(first.y(), 0.0, view.height - 1.0));
+    // The times of all lines divide the exposure evenly.
+    const double into_exposure_s =
+        std::max(0.0, shutter.exposure_s) * (PixelSamples(0, 0).at(line)[2] - 0.5);
+    const Then then(
+        view, shutter.middle_s(inside, view.width, view.height) + into_exposure_s, placed);
     std::vector<Fragment> unused;
-    for (int column = 0; column < kSide; ++column) {
-      const Pixel p(x0 + (column + 0.5) * (x1 - x0) / kSide, y0 + (row + 0.5) * (y1 - y0) / kSide);
+    for (int place = 0; place < kSide; ++place) {
+      const Pixel p = sample(line, place);
       if (p.x() >= 0 && p.y() >= 0 && p.x() < view.width && p.y() < view.height) continue;
       unused.clear();
-      rows[static_cast<std::size_t>(row)] += now.collect(p, 0, 0, unused);
+      lines[static_cast<std::size_t>(line)] += then.collect(p, 0, 0, unused);
     }
   });
-  return std::accumulate(rows.begin(), rows.end(), 0.0) * (x1 - x0) * (y1 - y0) / (kSide * kSide);
+  return std::accumulate(lines.begin(), lines.end(), 0.0) * (x1 - x0) * (y1 - y0) / (kSide * kSide);
 }
 
 image::Layer empty_layer(const PixelBox& patch, const std::vector<PlacedInstance>& instances) {
