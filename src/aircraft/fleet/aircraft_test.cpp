@@ -172,6 +172,19 @@ TEST_F(Models, SelectRotateAndSpinAreHonoured) {
   EXPECT_NEAR(model::extents(load_aircraft(with(rotate)).mesh).low_in_body.y(), -10, 1e-4);
 }
 
+// What stands on the ground is left out by a whole word of its name, and a shock strut is not.
+TEST_F(Models, WheelChocksDoNotFly) {
+  const auto named = [&](const std::string& name) {
+    std::string text = asymmetric_ac();
+    text.replace(text.find("body"), 4, name);
+    write_file(folder_ / "a.ac", text);
+    return (folder_ / "a.ac").string();
+  };
+  for (const char* chock : {"Chocks-Left", "nose_chock", "WheelChocks.001"})
+    EXPECT_THAT(error_of(named(chock)), testing::HasSubstr("no triangles")) << chock;
+  EXPECT_EQ(load_aircraft(named("UC-NLowerSchock")).mesh.triangle_count(), 3u);
+}
+
 // Nested models are effects by whole words of their path, below the aircraft's own folder.
 TEST_F(Models, ANestedPartIsAnEffectByWholeWordsOfItsPath) {
   const auto triangles = [&](const std::string& part) {

@@ -81,6 +81,7 @@ bool is_effect(const std::string& object) {
   const std::string name = without(lower_case(object), "noshadow");  // "Disk.noshadow" casts none
   return contains_any(name,
                       {"halo", "glow", "shadow", "contrail", "smoke", "flare", "beam", "vapor"}) ||
+         contains_any(words_of(object), {" chock ", " chocks "}) ||
          (object.ends_with("On") && contains_any(name, {"light", "beacon", "strobe"}));
 }
 

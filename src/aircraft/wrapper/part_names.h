@@ -17,8 +17,9 @@ bool is_effect_path(const std::string& path);
 // of UkraineIntl among them. A seed draws among the names that are listed by it.
 bool is_effect_name(const std::string& file);
 
-// Whether an object is a lamp, its glow, a shadow on the ground or smoke. These are effects of the
-// game and no part of the aircraft's body. A lamp that is lit has a name that ends in "On".
+// Whether an object is a lamp, its glow, a shadow on the ground, smoke or, by whole words, a
+// wheel's chock. These are effects of the game or stand on the ground, and are no part of the
+// aircraft's body. A lamp that is lit has a name that ends in "On".
 bool is_effect(const std::string& object);
 
 // Whether the names, outermost first, are those of a propeller or rotor that turns fast, and not of
