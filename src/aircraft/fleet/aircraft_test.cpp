@@ -89,8 +89,12 @@ TEST_F(Models, APropellersDiscIsFaintAndDark) {
     write_file(folder_ / "a.ac", text);
     return load_aircraft((folder_ / "a.ac").string()).mesh.materials.at(0);
   };
-  for (const char* disc :
-       {"Prop_Blur_L", "no1propdisk", "Propeller.Fast", "Disk.noshadow", "dh4_blur"}) {
+  for (const char* disc : {"Prop_Blur_L",
+                           "no1propdisk",
+                           "Propeller.Fast",
+                           "Disk.noshadow",
+                           "dh4_blur",
+                           "disqueHelice"}) {
     EXPECT_FLOAT_EQ(named(disc).opacity, 0.1f) << disc;
     EXPECT_LT(named(disc).diffuse[0], 0.1f) << disc;
   }
@@ -98,6 +102,7 @@ TEST_F(Models, APropellersDiscIsFaintAndDark) {
                             "right_fan_disk",
                             "no2engdisks",
                             "Propeller",
+                            "GiroHeliceDEL_02",
                             "ArCanopy-doublure",
                             "Discus-2b",
                             "DISCO"})
@@ -135,6 +140,29 @@ TEST_F(Models, APropellersDiscMayShareItsPicture) {
   write_file(folder_ / "a.ac", text);
   const auto mesh = load_aircraft((folder_ / "a.ac").string()).mesh;
   EXPECT_FLOAT_EQ(mesh.materials.at(0).opacity, 0.1f / 0.2f);
+}
+
+// Whatever its name, a part that turns and whose own texels are faint (51 of 255, a fifth) stands
+// for turning blades. One at rest keeps its picture, and blades that turn are opaque.
+TEST_F(Models, AFaintPartThatTurnsIsAPropellersDisc) {
+  fs::create_directories(folder_ / "AI/Aircraft/t");
+  const auto opacity = [&](int alpha, const std::string& animation) {
+    std::string tga("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\40\10", 18);
+    tga += {'\0', '\0', '\0', static_cast<char>(alpha)};
+    write_file(folder_ / "AI/Aircraft/t/skin.tga", tga);
+    std::string text = asymmetric_ac();
+    text.replace(text.find("numvert"), 0, "texture \"skin.tga\"\n");
+    text.replace(text.find("1 0 0\n2 0 0"), 11, "1 1 0\n2 0 1");
+    write_file(folder_ / "AI/Aircraft/t/a.ac", text);
+    write_file(folder_ / "AI/Aircraft/t/a.xml",
+               "<PropertyList><path>a.ac</path><animation><type>" + animation +
+                   "</type><object-name>body</object-name><property>engines/engine[0]/rpm"
+                   "</property><axis><x>1</x></axis></animation></PropertyList>");
+    return load_aircraft((folder_ / "AI/Aircraft/t/a.xml").string()).mesh.materials.at(0).opacity;
+  };
+  EXPECT_FLOAT_EQ(opacity(51, "spin"), 0.1f / 0.2f);
+  EXPECT_EQ(opacity(51, "noshadow"), 1);
+  EXPECT_EQ(opacity(255, "spin"), 1);
 }
 
 TEST_F(Models, SelectRotateAndSpinAreHonoured) {

@@ -25,6 +25,10 @@ constexpr std::size_t kMaxPictureBytes = std::size_t{256} << 20;
 // Models made for games draw denser and paler discs.
 constexpr float kDiscOpacity = 0.1f;
 constexpr float kBladeAlbedo = 0.06f;  // linear; black or grey paint, behind tips of any colour
+// A part that turns and covers less than this of the light where it is drawn at all is a picture of
+// turning blades. Of the package's parts that turn, such discs cover 0.10 to 0.35 and blades 0.51
+// or more.
+constexpr float kMaxDiscCover = 0.43f;
 
 int texel_alpha(const texture_file::Picture& picture, const Eigen::Vector2f& uv) {
   const auto place = [](float share, int size) {
@@ -164,11 +168,12 @@ std::uint32_t Assembly::material_of(const ac3d::Batch& batch,
   material.shininess = std::clamp(material.shininess, 0.0f, 128.0f);
   material.opacity = choice.opacity * std::clamp(material.opacity, 0.0f, 1.0f);
   material.texture = texture;
-  if (choice.is_propeller_disc)
-    make_propeller_disc(
-        material,
+  if (const bool turns = choice.part > 0; turns || choice.is_propeller_disc) {
+    const float cover =
         texture < 0 ? 1
-                    : cover_of(batch, model_.pictures[static_cast<std::size_t>(texture)].picture));
+                    : cover_of(batch, model_.pictures[static_cast<std::size_t>(texture)].picture);
+    if (choice.is_propeller_disc || cover < kMaxDiscCover) make_propeller_disc(material, cover);
+  }
   auto& materials = model_.mesh.materials;
   const auto same = std::find(materials.begin(), materials.end(), material);
   const auto index = static_cast<std::uint32_t>(same - materials.begin());

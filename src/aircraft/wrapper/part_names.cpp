@@ -93,8 +93,8 @@ bool is_propeller_disc(const std::vector<std::string>& names) {
   return contains_any(name, {"_blur", "-blur"}) || words.starts_with(" disk ") ||
          words.starts_with(" disc ") || words.starts_with(" disklh") ||
          words.starts_with(" diskrh") ||  // "disklha"; and no Discus
-         (contains_any(name, {"prop", "prplr", "rotor"}) &&
-          contains_any(name, {"disk", "disc", "blur", "fast"}));
+         (contains_any(name, {"prop", "prplr", "rotor", "helice"}) &&
+          contains_any(name, {"disk", "disc", "disque", "blur", "fast"}));
 }
 
 bool is_wheel(const std::string& object) {

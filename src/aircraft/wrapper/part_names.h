@@ -23,7 +23,7 @@ bool is_effect_name(const std::string& file);
 bool is_effect(const std::string& object);
 
 // Whether the names, outermost first, are those of a propeller or rotor that turns fast, and not of
-// a jet engine's fan ("Prop_Blur_L", "no1propdisk", "Propeller.Fast", "Disk.noshadow").
+// a jet engine's fan ("Prop_Blur_L", "no1propdisk", "Propeller.Fast", "disqueHelice").
 bool is_propeller_disc(const std::vector<std::string>& names);
 
 bool is_wheel(const std::string& object);
