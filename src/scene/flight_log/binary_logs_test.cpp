@@ -173,6 +173,22 @@ TEST(Ulog, WrongDefinitionsAreErrors) {
             "a.ulg: a format has a field that is no type and name (byte 16)");
 }
 
+// Eight formats, each with 200 fields of the one before: 200^8 walks of the first, one a field.
+TEST(Ulog, ADefinitionIsWalkedOnceHoweverManyFieldsAreOfIt) {
+  std::string log = ulog_header() + ulog_message('F', "A:");
+  std::string name = "A";
+  for (char next = 'B'; next <= 'I'; ++next) {
+    std::string fields(1, next);
+    fields += ':';
+    for (int i = 0; i < 200; ++i) fields += name + " x;";
+    log += ulog_message('F', fields);
+    name = std::string(1, next);
+  }
+  log += subscription(0, name);
+  EXPECT_THAT(test_support::error_of([&] { parse_flight_log(log, "a.ulg"); }),
+              testing::HasSubstr("holds 0 positions"));
+}
+
 // ---------------------------------------------------------------- ArduPilot DataFlash
 
 std::string dataflash_format(std::uint8_t type,

@@ -35,7 +35,11 @@ struct Field {
   std::size_t count = 1;
   std::string name;
 };
-using Formats = std::map<std::string, std::vector<Field>, std::less<>>;
+struct Definition {
+  std::vector<Field> fields;
+  std::optional<std::size_t> size;  // in bytes; once it was asked for
+};
+using Formats = std::map<std::string, Definition, std::less<>>;
 
 std::size_t size_of_type(std::string_view type) {
   static const std::map<std::string_view, std::size_t> kSizes = {{"int8_t", 1},
@@ -142,17 +146,21 @@ class UlogReader {
       }
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
-    formats_[std::string(body.substr(0, colon))] = std::move(fields);
+    formats_[std::string(body.substr(0, colon))] = {std::move(fields), std::nullopt};
   }
 
-  std::size_t size_of(const Field& field, int depth, std::size_t at) const {
+  // Each definition is walked once, however many fields are of it.
+  std::size_t size_of(const Field& field, int depth, std::size_t at) {
     if (const std::size_t size = size_of_type(field.type)) return size * field.count;
     const auto format = formats_.find(field.type);
     if (format == formats_.end() || depth > kMaxNesting)
       fail(fmt::format("a field has the unknown type '{}'", printable(field.type)), at);
+    auto& [fields, known_size] = format->second;
+    if (known_size) return *known_size * field.count;
     std::size_t size = 0;
-    for (const Field& part : format->second) size += size_of(part, depth + 1, at);
+    for (const Field& part : fields) size += size_of(part, depth + 1, at);
     if (size > kMaxCount * 8) fail("a format is too large", at);
+    known_size = size;
     return size * field.count;
   }
 
@@ -164,7 +172,7 @@ class UlogReader {
       fail(fmt::format("subscribes '{}' before its format", printable(name)), at);
     Topic topic;
     std::size_t place = 0;
-    for (const Field& field : format->second) {
+    for (const Field& field : format->second.fields) {
       topic[field.name] = {place, field.type, field.count};
       place += size_of(field, 0, at);
     }
