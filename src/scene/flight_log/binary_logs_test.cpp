@@ -149,6 +149,24 @@ TEST(Ulog, ADamagedPartEndsAtTheNextSynchronisation) {
   EXPECT_THAT(read.first_fault, testing::HasSubstr("damaged from byte"));
 }
 
+// Record 4 has a wrong type or a wrong length. A record that is cut off is no damage.
+TEST(Ulog, DamageToTheEndIsSaid) {
+  std::string log =
+      ulog_header() + ulog_message('F', kReceiverFormat) + receiver_subscription(7, 0);
+  for (int i = 0; i < 4; ++i) log += receiver_data(7, i, 3);
+  const std::string record = receiver_data(7, 4, 3);
+  const auto fault_with = [&](const std::string& end) {
+    const FlightLog read = parse_flight_log(log + end, "a.ulg");
+    EXPECT_EQ(read.fixes.size(), 4u);
+    return read.first_fault;
+  };
+  const std::string said =
+      "a.ulg: is damaged from byte " + std::to_string(log.size()) + " to its end";
+  EXPECT_EQ(fault_with(record.substr(0, 2) + '\xee' + record.substr(3) + record), said);
+  EXPECT_EQ(fault_with("\xff\xff" + record.substr(2) + record), said);
+  EXPECT_EQ(fault_with(record.substr(0, 20)), "");
+}
+
 TEST(Ulog, ALogCutOffAnywhereIsReadUpToThereOrRefused) {
   const std::string whole = small_ulog();
   for (std::size_t n = 0; n < whole.size(); ++n) {

@@ -27,7 +27,7 @@ constexpr std::size_t kMessageHeadBytes = 3;
 // How far from 1 the norm of an attitude's quaternion may be, which is written as floats.
 constexpr double kUnitTolerance = 0.1;
 constexpr int kMaxNesting = 8;  // formats of PX4 nest once
-// The largest array of one field; PX4's largest message has fewer than 4,096 bytes.
+// The largest array of one field, and a length that no message has: PX4's largest has fewer bytes.
 constexpr std::size_t kMaxCount = 4096;
 
 struct Field {
@@ -100,19 +100,25 @@ class UlogReader {
   FlightLog read() {
     if (bytes_.size() < kHeaderBytes) fail("is cut off within its header; expected 16 bytes", 0);
     std::size_t at = kHeaderBytes;
-    // A log whose aircraft lost power ends within a message. All messages before count.
+    // A log whose aircraft lost power ends within a message, of which it holds a true head. All
+    // messages before count.
     while (bytes_.size() - at >= kMessageHeadBytes) {
       const std::size_t size = little_endian<std::uint16_t>(bytes_, at);
       const char type = bytes_[at + 2];
       const bool is_whole = bytes_.size() - at - kMessageHeadBytes >= size;
-      if (is_whole && kTypes.find(type) != std::string_view::npos) {
+      const bool is_known = kTypes.find(type) != std::string_view::npos;
+      if (is_whole && is_known) {
         message(type, bytes_.substr(at + kMessageHeadBytes, size), at);
         at += kMessageHeadBytes + size;
         continue;
       }
       // What is damaged ends at the next synchronisation message.
       const std::size_t next = bytes_.find(kSync, at + 1);
-      if (next == std::string_view::npos) break;
+      if (next == std::string_view::npos) {
+        if (!is_known || size >= kMaxCount)
+          leave_out(log_, fmt::format("is damaged from byte {} to its end", at), {file_});
+        break;
+      }
       leave_out(
           log_, fmt::format("is damaged from byte {}; it goes on at byte {}", at, next), {file_});
       at = next;
