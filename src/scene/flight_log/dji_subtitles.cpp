@@ -74,14 +74,16 @@ std::optional<double> first_of(std::string_view text,
   return std::nullopt;
 }
 
-// "00:01:02,033" in seconds.
+// "00:01:02,033" in seconds. A fraction of other than three digits has no sure meaning.
 std::optional<double> time_of(std::string_view text) {
+  constexpr std::ptrdiff_t kFractionDigits = 3;
   int parts[4] = {};
   const char* at = text.data();
   const char* end = at + text.size();
   for (int& part : parts) {
     const auto [rest, failed] = std::from_chars(at, end, part);
     if (failed != std::errc() || part < 0) return std::nullopt;
+    if (&part == &parts[3] && rest - at != kFractionDigits) return std::nullopt;
     at = rest < end ? rest + 1 : end;
   }
   return 3600.0 * parts[0] + 60.0 * parts[1] + parts[2] + 0.001 * parts[3];

@@ -116,6 +116,9 @@ TEST(DjiSubtitles, FramesWithoutSatellitesAreLeftOutAndBadTimesNamed) {
             "a.srt: holds 0 positions (DJI subtitles, 1 records left out); expected at least two");
   EXPECT_EQ(error_of("1\n00:0x --> 00:00:00,033\n", "a.srt"),
             "a.srt:2: time is '00:0x '; expected one such as 00:01:02,033");
+  for (const char* time : {"00:00:00,5 ", "00:00:00,5000 "})
+    EXPECT_THAT(error_of(std::string("1\n") + time + "--> 00:00:01,000\n", "a.srt"),
+                testing::HasSubstr("a.srt:2: time is '00:00:00,5"));
   EXPECT_EQ(
       error_of("1\n00:00:00,000 --> 00:00:00,033\n[latitude: 95] [longitude: 0.0] [rel_alt: 1]\n",
                "a.srt"),
