@@ -98,7 +98,8 @@ constexpr std::size_t kLargestYaml_bytes = std::size_t{1} << 20;
 // A matrix and a list of coefficients hold at most 64 numbers.
 constexpr std::size_t kLongestValue_bytes = 4096;
 
-using Values = std::map<std::string, Value>;  // "camera_matrix.data" -> "[ 1, 0, ... ]"
+// "camera_matrix.data" -> "[ 1, 0, ... ]", as often as the file has it.
+using Values = std::multimap<std::string, Value>;
 
 Values values_of_xml(std::string_view text, const std::string& file) {
   pugi::xml_document document;
@@ -110,9 +111,10 @@ Values values_of_xml(std::string_view text, const std::string& file) {
   for (const pugi::xml_node node : document.child("opencv_storage")) {
     const int line = line_of(text, node.offset_debug());
     if (node.child("data")) {
-      values[std::string(node.name()) + ".data"] = {node.child("data").text().get(), line};
+      values.emplace(std::string(node.name()) + ".data",
+                     Value{node.child("data").text().get(), line});
     } else {
-      values[node.name()] = {node.text().get(), line};
+      values.emplace(node.name(), Value{node.text().get(), line});
     }
   }
   if (values.empty())
@@ -154,14 +156,18 @@ YAML::Node only_camera(const YAML::Node& top, const std::string& file) {
 Values values_of_yaml(std::string_view text, const std::string& file) {
   if (text.size() > kLargestYaml_bytes)
     throw Error("is larger than 1 MiB; expected an OpenCV calibration", {file});
-  YAML::Node top;
+  std::vector<YAML::Node> documents;
   try {
-    top = YAML::Load(std::string(text));
+    documents = YAML::LoadAll(std::string(text));
   } catch (const YAML::Exception& error) {
     throw Error("is not YAML: " + error.msg, {file, error.mark.line + 1});
   }
   Values values;
-  if (!top.IsMap()) return values;
+  // A second document is a key that nothing reads, by the mark before it.
+  if (documents.size() > 1 && documents[1].IsMap())
+    values.emplace("---", Value{"", documents[1].Mark().line});
+  if (documents.empty() || !documents[0].IsMap()) return values;
+  YAML::Node top = documents[0];
   if (const YAML::Node camera = only_camera(top, file); camera.IsMap()) top.reset(camera);
   for (const auto& entry : top) {
     const YAML::Node& name = entry.first;
@@ -170,19 +176,24 @@ Values values_of_yaml(std::string_view text, const std::string& file) {
     const int line = name.Mark().line + 1;
     const YAML::Node data = node.IsMap() ? node["data"] : YAML::Node(YAML::NodeType::Undefined);
     if (data.IsDefined())
-      values[name.Scalar() + ".data"] = value_of(data, line);
+      values.emplace(name.Scalar() + ".data", value_of(data, line));
     else
-      values[name.Scalar()] = value_of(node, line);
+      values.emplace(name.Scalar(), value_of(node, line));
   }
   return values;
 }
 
-std::vector<double> numbers(const Value& value, const std::string& key, const std::string& file) {
+// Without the brackets and commas of a list.
+std::istringstream words_of(const Value& value) {
   std::string text = value.text;
   for (char& c : text)
     if (c == '[' || c == ']' || c == ',') c = ' ';
+  return std::istringstream(text);
+}
+
+std::vector<double> numbers(const Value& value, const std::string& key, const std::string& file) {
   std::vector<double> result;
-  std::istringstream words(text);
+  std::istringstream words = words_of(value);
   for (std::string word; words >> word;) {
     double number = 0;
     const char* end = word.data() + word.size();
@@ -198,21 +209,51 @@ std::vector<double> numbers(const Value& value, const std::string& key, const st
   return result;
 }
 
-const Value* find(const Values& values, const std::vector<std::string>& keys, std::string* found) {
+// Whether two values are of the same numbers ("600." is 600) or words.
+bool say_the_same(const Value& a, const Value& b) {
+  std::istringstream of_a = words_of(a), of_b = words_of(b);
+  for (std::string x, y;;) {
+    const bool has_x(of_a >> x), has_y(of_b >> y);
+    if (!has_x || !has_y) return has_x == has_y;
+    double number_x = 0, number_y = 0;
+    const bool are_numbers =
+        std::from_chars(x.data(), x.data() + x.size(), number_x).ec == std::errc() &&
+        std::from_chars(y.data(), y.data() + y.size(), number_y).ec == std::errc();
+    if (are_numbers ? number_x != number_y : x != y) return false;
+  }
+}
+
+// The value of the keys of one meaning; nullptr where the file has none. Throws Error where it has
+// two that differ.
+const Value* find(const Values& values,
+                  const std::vector<std::string>& keys,
+                  std::string* found,
+                  const std::string& file) {
+  const Value* first = nullptr;
   for (const std::string& key : keys) {
     for (const std::string& name : {key + ".data", key}) {
-      const auto at = values.find(name);
-      if (at == values.end() || at->second.text.empty()) continue;
-      *found = key;
-      return &at->second;
+      const auto [begin, end] = values.equal_range(name);
+      for (auto at = begin; at != end; ++at) {
+        const Value& value = at->second;
+        if (value.text.empty()) continue;
+        if (first == nullptr) {
+          *found = key;
+          first = &value;
+        } else if (!say_the_same(*first, value)) {
+          throw Error(
+              fmt::format(
+                  "{} differs from {} in line {}; expected one lens", key, *found, first->line),
+              {file, value.line});
+        }
+      }
     }
   }
-  return nullptr;
+  return first;
 }
 
 int whole(const Values& values, const std::vector<std::string>& keys, const std::string& file) {
   std::string key;
-  const Value* value = find(values, keys, &key);
+  const Value* value = find(values, keys, &key, file);
   if (value == nullptr) return 0;
   const auto list = numbers(*value, key, file);
   if (list.size() != 1 || list[0] < 1 || list[0] > 65536)
@@ -286,7 +327,7 @@ bool is_fisheye_model(const std::string& key, const Value& value, const std::str
 // Whether the file says that its lens is a fisheye; empty where it says nothing.
 std::optional<bool> says_fisheye(const Values& values, const std::string& file) {
   std::string key;
-  if (const Value* value = find(values, kFisheyeFlag, &key)) {
+  if (const Value* value = find(values, kFisheyeFlag, &key, file)) {
     const std::string flag(airtruth::trimmed(value->text));
     if (flag == "1" || flag == "true") return true;
     if (flag == "0" || flag == "false") return false;
@@ -295,7 +336,7 @@ std::optional<bool> says_fisheye(const Values& values, const std::string& file) 
   // Kalibr states two: the projection and the distortion. The second decides.
   std::optional<bool> says;
   for (const std::string& name : kModels)
-    if (const Value* model = find(values, {name}, &key)) {
+    if (const Value* model = find(values, {name}, &key, file)) {
       const bool is_fisheye = is_fisheye_model(name, *model, file);
       says = says.value_or(false) || is_fisheye;
     }
@@ -335,16 +376,23 @@ void expect_known_keys(const Values& values, const std::string& file, Calibratio
 
 // The sizes of a camera by one key with both sides, or by two.
 ImageSize size_in(const Values& values, const std::string& file) {
+  const ImageSize size{whole(values, kWidth, file), whole(values, kHeight, file)};
   std::string key;
-  if (const Value* both = find(values, kBothSides, &key)) {
+  if (const Value* both = find(values, kBothSides, &key, file)) {
     const auto list = numbers(*both, key, file);
     for (const double side : list)
       if (list.size() != 2 || side < 1 || side > 65536 || side != std::floor(side))
         throw Error(key + " is '" + both->text.substr(0, 40) + "'; expected [width, height]",
                     {file, both->line});
-    if (list.size() == 2) return {static_cast<int>(list[0]), static_cast<int>(list[1])};
+    if (list.size() == 2) {
+      if ((size.width != 0 && size.width != list[0]) ||
+          (size.height != 0 && size.height != list[1]))
+        throw Error(key + " differs from " + std::to_string(size.width) + "x" +
+                        std::to_string(size.height) + " of two keys; expected one size",
+                    {file, both->line});
+      return {static_cast<int>(list[0]), static_cast<int>(list[1])};
+    }
   }
-  const ImageSize size{whole(values, kWidth, file), whole(values, kHeight, file)};
   if ((size.width == 0) != (size.height == 0))
     throw Error("has only one of image_width and image_height; expected both or none", {file});
   return size;
@@ -353,7 +401,7 @@ ImageSize size_in(const Values& values, const std::string& file) {
 std::array<double, 9> matrix_in(const Values& values, const std::string& file) {
   std::string key;
   std::array<double, 9> matrix{};
-  if (const Value* value = find(values, kMatrix, &key)) {
+  if (const Value* value = find(values, kMatrix, &key, file)) {
     const auto m = numbers(*value, key, file);
     if (m.size() != 9)
       throw Error(key + " holds " + std::to_string(m.size()) + " numbers; expected 9",
@@ -361,7 +409,7 @@ std::array<double, 9> matrix_in(const Values& values, const std::string& file) {
     std::copy(m.begin(), m.end(), matrix.begin());
     return matrix;
   }
-  const Value* intrinsics = find(values, kIntrinsics, &key);
+  const Value* intrinsics = find(values, kIntrinsics, &key, file);
   if (intrinsics == nullptr)
     throw Error(
         "has no camera_matrix; expected a calibration of OpenCV, ROS or Kalibr, or a .json of "
@@ -385,7 +433,7 @@ Calibration parse_opencv_calibration(std::string_view text, const std::filesyste
   Calibration c;
   c.camera_matrix = matrix_in(values, file);
   std::string key;
-  const Value* distortion = find(values, kDistortion, &key);
+  const Value* distortion = find(values, kDistortion, &key, file);
   if (distortion != nullptr) c.distortion = numbers(*distortion, key, file);
   c.size = size_in(values, file);
   expect_known_keys(values, file, c);

@@ -217,6 +217,32 @@ TEST(OpenCv, ReadsBothSidesFromOneKey) {
   EXPECT_THAT(error_of(opencv("image_size: [640]"), "a.yml"), testing::HasSubstr("image_size is"));
 }
 
+// Two calibrations in one file are not one lens; a key that says the same again is no fault.
+TEST(OpenCv, AFileThatSaysTwoThingsIsRefused) {
+  const std::string same = "K: [[900., 0, 639.5], [0, 905.0, 479.5], [0, 0, 1]]\n";
+  const std::string other = "K: [450, 0, 319.5, 0, 452.5, 239.5, 0, 0, 1]\n";
+  const Lens lens = parse_calibration(opencv(same + same), "a.yml", kProfileSize);
+  EXPECT_EQ(std::get<Pinhole>(lens.model()).focal_px, Pixel(900, 905));
+  EXPECT_EQ(error_of(opencv(other), "a.yml"),
+            "a.yml:2: K differs from camera_matrix in line 1; expected one lens");
+  EXPECT_EQ(error_of(other + same, "a.yml"),
+            "a.yml:2: K differs from K in line 1; expected one lens");
+  const std::string xml = "<opencv_storage>\n<K>900 0 640 0 900 480 0 0 1</K>\n";
+  EXPECT_EQ(error_of(xml + "<K>600 0 640 0 600 480 0 0 1</K>\n</opencv_storage>", "a.xml"),
+            "a.xml:3: K differs from K in line 2; expected one lens");
+  const std::string agisoft = "<calibration><projection>frame</projection><width>1280</width>\n";
+  EXPECT_EQ(error_of(agisoft + "<height>960</height><f>900</f>\n<f>600</f></calibration>", "a.xml"),
+            "a.xml:3: <f> is there twice; expected one");
+  const std::string sides = "image_width: 1280\nimage_height: 960\n";
+  EXPECT_EQ(error_of(opencv(sides + "image_size: [640, 480]"), "a.yml"),
+            "a.yml:4: image_size differs from 1280x960 of two keys; expected one size");
+  std::vector<std::string> warnings;
+  parse_calibration(opencv("---\n" + other), "a.yml", kProfileSize, [&](const std::string& text) {
+    warnings.push_back(text);
+  });
+  EXPECT_THAT(warnings, testing::ElementsAre("a.yml:2: '---' is not read"));
+}
+
 TEST(OpenCv, ReadsItsJson) {
   cv::FileStorage storage(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
   const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 900.25, 0, 639.5, 0, 905, 479.5, 0, 0, 1);

@@ -116,7 +116,10 @@ Calibration parse_agisoft_calibration(std::string_view text, const std::filesyst
   for (const pugi::xml_node& node : top.children()) {
     const std::string key = node.name();
     if (key == "projection" || key == "date" || key.empty()) continue;
-    values[key] = finite_number(std::string(airtruth::trimmed(node.child_value())), where(node));
+    const double value =
+        finite_number(std::string(airtruth::trimmed(node.child_value())), where(node));
+    if (!values.emplace(key, value).second)
+      throw Error("<" + key.substr(0, 40) + "> is there twice; expected one", where(node));
   }
   Calibration c;
   c.fisheye = projection == "fisheye";
