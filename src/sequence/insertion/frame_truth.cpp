@@ -166,6 +166,8 @@ std::vector<annotation::Intruder> intruders_of(const setup::World& world,
       truth.exact_box_px = truth.state == annotation::State::kVisible ? moment.boxes[i].box
                                                                       : moment.boxes[i].whole();
       if (seen != nullptr) add_pixels(truth, i, layer, *seen);
+      // What lies wholly beyond the frame is not drawn.
+      if (truth.exact_box_px && !moment.search[i]) truth.cut_by_frame = 1;
     }
     result.push_back(std::move(truth));
   }

@@ -241,6 +241,7 @@ TEST(Distractors, ABirdTooFarForAnySampleIsHiddenInViewAndOutsideBesideIt) {
     EXPECT_EQ(made.truth.intruders[0].state,
               right_m < 100 ? annotation::State::kHidden : annotation::State::kOutside);
     EXPECT_TRUE(made.truth.intruders[0].exact_box_px);
+    EXPECT_EQ(made.truth.intruders[0].cut_by_frame, right_m < 100 ? 0 : 1);
   }
 }
 
