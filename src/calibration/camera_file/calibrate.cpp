@@ -235,6 +235,7 @@ class Session {
     put(quantities().sharpening, found, &optics::StepResponse::sharpening);
     put(quantities().sharpening_radius, found, &optics::StepResponse::sharpening_px);
     if (!found) {
+      quantities().vertical_spread.missing = found.why();
       quantities().chroma_spread.missing = found.why();
       return;
     }
@@ -243,6 +244,7 @@ class Session {
         fmt::format("across an edge {:.2f} px from 10 to 90 %, by {} edges",
                     result_.edge.spread_px,
                     result_.edge.edges);
+    put(quantities().vertical_spread, edges_.vertical(*found, codec_step()));
     put(quantities().chroma_spread, edges_.chroma(*found, codec_step()));
   }
 

@@ -61,6 +61,7 @@ struct Quantities {
   Quantity extinction;         // per km; red, green, blue
   Quantity airlight;           // linear light; red, green, blue
   Quantity point_spread;       // px, a standard deviation
+  Quantity vertical_spread;    // px, a standard deviation
   Quantity sharpening;         // amount of the unsharp mask
   Quantity sharpening_radius;  // px, a standard deviation
   Quantity noise_gain;         // variance of linear light per linear light
@@ -89,7 +90,7 @@ struct QuantityKey {
 };
 
 // All quantities, in the order of a camera file.
-inline constexpr std::array<QuantityKey, 14> kQuantityKeys = {{
+inline constexpr std::array<QuantityKey, 15> kQuantityKeys = {{
     {"shutter.exposure_s", "seconds that a row is exposed", &Quantities::exposure},
     {"shutter.readout_s",
      "seconds from the first row to the last; 0: no sign of any",
@@ -101,6 +102,9 @@ inline constexpr std::array<QuantityKey, 14> kQuantityKeys = {{
     {"optics.point_spread_px",
      "standard deviation, with the codec's softness in it",
      &Quantities::point_spread},
+    {"optics.vertical_spread_px",
+     "and what columns have beyond rows, as of an interlaced picture made whole",
+     &Quantities::vertical_spread},
     {"optics.sharpening", "amount of the unsharp mask", &Quantities::sharpening},
     {"optics.sharpening_px", "and its standard deviation", &Quantities::sharpening_radius},
     {"sensor.noise_gain", "variance of linear light is gain x light ...", &Quantities::noise_gain},

@@ -16,10 +16,14 @@ namespace {
 
 constexpr const char* kPointSpread = "optics.point_spread_px";
 // The keys of the optics, which a clip shows together by its edges or not at all.
-constexpr std::array<const char*, 4> kOptics = {
-    kPointSpread, "optics.sharpening", "optics.sharpening_px", "sensor.chroma_spread_px"};
+constexpr std::array<const char*, 5> kOptics = {kPointSpread,
+                                                "optics.vertical_spread_px",
+                                                "optics.sharpening",
+                                                "optics.sharpening_px",
+                                                "sensor.chroma_spread_px"};
 // The keys that a profile may have: all values that belong to the camera and not to one flight.
-constexpr std::array<const char*, 8> kProfileKeys = {kPointSpread,
+constexpr std::array<const char*, 9> kProfileKeys = {kPointSpread,
+                                                     "optics.vertical_spread_px",
                                                      "optics.sharpening",
                                                      "optics.sharpening_px",
                                                      "sensor.noise_gain",

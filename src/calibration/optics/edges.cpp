@@ -47,6 +47,8 @@ constexpr double kMaxMotionPx = 10;
 // Edges within this distance, px, and this cosine of their directions (2 degrees) are one edge.
 constexpr double kMaxOffsetOfSamePx = 1;
 constexpr double kMinCosineOfSame = 0.9994;
+// Cosine of the angle to an axis of the picture up to which an edge lies along it, 30 degrees.
+constexpr double kMinCosineToAxis = 0.866;
 // Mean relative excess of the spread of edges in the world over the sharpest. The sharpest of n
 // different edges exceeds the camera's spread by 1 / n of it: the expected minimum of n exponential
 // values.
@@ -267,8 +269,7 @@ std::vector<const EdgeMeter::Edge*> EdgeMeter::usable(double codec_step) const {
   return long_ones.size() >= kMinLong ? long_ones : chosen;
 }
 
-std::vector<const EdgeMeter::Edge*> EdgeMeter::by_width(double codec_step) const {
-  std::vector<const Edge*> edges = usable(codec_step);
+std::vector<const EdgeMeter::Edge*> EdgeMeter::by_width(std::vector<const Edge*> edges) {
   std::sort(edges.begin(), edges.end(), [](const Edge* a, const Edge* b) {
     return a->width_px < b->width_px;
   });
@@ -309,7 +310,7 @@ Measured<StepResponse> EdgeMeter::result(double codec_step) {
   if (edges_.size() < kMinEdges)
     return NotMeasured{"the clip shows " + std::to_string(edges_.size()) +
                        " clean straight edges; it takes " + std::to_string(kMinEdges)};
-  const std::vector<const Edge*> sharpest_first = by_width(codec_step);
+  const std::vector<const Edge*> sharpest_first = by_width(usable(codec_step));
   const auto edges = sharp_ones(sharpest_first);
   StepResponse response = fit_step_response(edges, tone_);
   Estimate& spread = response.point_spread_px;
@@ -317,6 +318,36 @@ Measured<StepResponse> EdgeMeter::result(double codec_step) {
   spread.sigma = std::hypot(spread.sigma, spread.value * kMeanExcessInWorld / limited);
   profile_ = edge_profile(edges, response, tone_);
   return response;
+}
+
+Estimate EdgeMeter::spread_by(const std::vector<const Edge*>& sharpest_first,
+                              const StepResponse& mask) const {
+  Estimate spread = camera_spread_px(sharp_ones(sharpest_first), mask, tone_);
+  const double limited = share_limited(sharpest_first) * most_at_once_ *
+                         double(sharpest_first.size()) / double(edges_.size());
+  spread.sigma = std::hypot(spread.sigma, spread.value * kMeanExcessInWorld / limited);
+  return spread;
+}
+
+Measured<Estimate> EdgeMeter::vertical(const StepResponse& response, double codec_step) const {
+  std::vector<const Edge*> along_rows, along_columns;
+  for (const Edge* edge : usable(codec_step)) {
+    if (std::abs(edge->line.ny) > kMinCosineToAxis) along_rows.push_back(edge);
+    if (std::abs(edge->line.nx) > kMinCosineToAxis) along_columns.push_back(edge);
+  }
+  if (std::min(along_rows.size(), along_columns.size()) < kMinEdges)
+    return NotMeasured{
+        fmt::format("the clip shows {} clean edges along its rows and {} along its "
+                    "columns; it takes {} of each",
+                    along_rows.size(),
+                    along_columns.size(),
+                    kMinEdges)};
+  const Estimate down = spread_by(by_width(std::move(along_rows)), response);
+  const Estimate across = spread_by(by_width(std::move(along_columns)), response);
+  const double variance = down.value * down.value - across.value * across.value;
+  const double error = 2 * std::hypot(down.value * down.sigma, across.value * across.sigma);
+  if (variance < 2 * error) return Estimate{0, std::sqrt(error)};
+  return Estimate{std::sqrt(variance), error / (2 * std::sqrt(variance))};
 }
 
 Measured<Estimate> EdgeMeter::chroma(const StepResponse& response, double codec_step) const {

@@ -7,9 +7,11 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 #include "foundation/base/seed.h"
 #include "foundation/image/colour.h"
+#include "foundation/image/mats.h"
 #include "picture/video/patch_codec.h"
 
 namespace airtruth::optics {
@@ -85,6 +87,37 @@ TEST(Edges, LinesAlongSomeOfThemAreNoSharpening) {
   const StepResponse found = measured(0.15);
   EXPECT_NEAR(found.point_spread_px.value, kSpreadPx, 0.05);
   EXPECT_LT(found.sharpening.value, 0.05);
+}
+
+// OpenCV blurs along the columns alone.
+TEST(Edges, SofterAlongTheColumns) {
+  for (const double beyond_px : {0.0, 0.8}) {
+    EdgeMeter meter(nullptr, {});
+    for (const double shift_px : {0.0, 1.3, 2.6, 3.9, 5.2, 6.5})
+      for (const bool is_turned : {false, true}) {
+        cv::Mat grey = image::luma_of(bars(0, shift_px));
+        if (is_turned) cv::transpose(grey, grey);
+        if (beyond_px > 0) cv::GaussianBlur(grey, grey, {1, 15}, 1e-3, beyond_px);
+        image::Picture picture = image::make_picture(grey.cols, grey.rows, {});
+        for (int y = 0; y < grey.rows; ++y)
+          std::copy_n(grey.ptr<std::uint8_t>(y), grey.cols, picture.planes[0].row(y));
+        meter.add(picture, std::nullopt);
+      }
+    const auto found = meter.result();
+    ASSERT_TRUE(found) << found.why();
+    EXPECT_NEAR(found->point_spread_px.value, kSpreadPx, 0.05);
+    const auto vertical = meter.vertical(*found);
+    ASSERT_TRUE(vertical) << vertical.why();
+    EXPECT_NEAR(vertical->value, beyond_px, 0.05);
+  }
+}
+
+TEST(Edges, AlongTheColumnsAloneSayNothingOfTheDifference) {
+  EdgeMeter meter(nullptr, {});
+  for (const double shift_px : {0.0, 1.3, 2.6}) meter.add(bars(0, shift_px), std::nullopt);
+  EXPECT_EQ(meter.vertical(*meter.result()).why(),
+            "the clip shows 0 clean edges along its rows and 36 along its columns; it takes 12 of "
+            "each");
 }
 
 // Cb crosses the same edge as luma through a wider Gaussian, whatever the sharpness of luma is.

@@ -226,6 +226,14 @@ StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
   return response;
 }
 
+Estimate camera_spread_px(const std::vector<const StepEdge*>& edges,
+                          const StepResponse& mask,
+                          const image::ToneCurve& tone) {
+  std::vector<GatheredEdge> all;
+  for (const StepEdge* edge : edges) all.emplace_back(*edge);
+  return camera_spread(fit_edges(all, mask.sharpening_px.value, mask.sharpening.value, tone));
+}
+
 double edge_spread_px(const StepResponse& response,
                       double low,
                       double high,

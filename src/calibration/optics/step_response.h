@@ -52,6 +52,11 @@ struct StepResponse {
 StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
                                const image::ToneCurve& tone);
 
+// The spread of the camera alone, by edges under a mask that is known.
+Estimate camera_spread_px(const std::vector<const StepEdge*>& edges,
+                          const StepResponse& mask,
+                          const image::ToneCurve& tone);
+
 // The distance in px between the last place below 10 % of the height that `response` gives to
 // a step between two levels of coded luma, and the first place above 90 %.
 double edge_spread_px(const StepResponse& response,

@@ -70,7 +70,8 @@ TEST(Cover, TheBoxIsTheClosedFormsOfARectangleThroughAGaussian) {
     for (const double width : {0.6, 1.0, 3.3, 20.0})
       for (const double shift : {0.0, 0.25, 0.5, 0.9}) {
         const Box box{30 + shift, 25 + 0.7 * shift, width, 0.4 * width + 0.5};
-        const image::Layer layer = spread(rectangle(box), sigma, 0, kCoverWidth, kCoverHeight);
+        const image::Layer layer =
+            spread(rectangle(box), {sigma, sigma}, 0, kCoverWidth, kCoverHeight);
         const auto found = covered(layer, 0);
         const double effective = sigma > 0 ? std::sqrt(sigma * sigma + 1.0 / 12) : 0;
         const auto most = bounds_in_closed_form(box, effective, kAlpha - kOff);
@@ -94,7 +95,7 @@ TEST(Cover, TheBoxIsTheClosedFormsOfARectangleThroughAGaussian) {
 
 TEST(Cover, TheMaskHoldsTheSumAndTheBoxOfTheCoverage) {
   const image::Layer layer =
-      spread(rectangle({20.3, 30.2, 17, 5}), 0.9, 0, kCoverWidth, kCoverHeight);
+      spread(rectangle({20.3, 30.2, 17, 5}), {0.9, 0.9}, 0, kCoverWidth, kCoverHeight);
   const AlphaMask mask = alpha_mask(layer, 0);
   double sum = 0;
   int pixels = 0;
@@ -119,7 +120,7 @@ TEST(Cover, WhatTheOwnAircraftHidesIsNotCovered) {
   find_areas(sharp, occlusion);
   EXPECT_NEAR(sharp.areas[0].free_px, 15 * 10, 1e-3);
   EXPECT_NEAR(sharp.areas[0].seen_px, 20 * 10, 1e-9);
-  image::Layer layer = spread(sharp, 1, 0, kCoverWidth, kCoverHeight);
+  image::Layer layer = spread(sharp, {1, 1}, 0, kCoverWidth, kCoverHeight);
   EXPECT_NEAR(layer.areas[0].free_px, 15 * 10, 1e-3);
   EXPECT_TRUE(covered(layer, 0)->box.x < 25);
   hide(layer, occlusion);
@@ -197,7 +198,7 @@ class Rippling : public PatchCoder {
 // A codec's ripple changes samples all around but no covered box.
 TEST(Cover, ACodecsRippleMovesTheVisibleBoxAlone) {
   const image::Layer layer =
-      spread(rectangle({40.2, 30.4, 9, 3}), 0.8, 8, kCoverWidth, kCoverHeight);
+      spread(rectangle({40.2, 30.4, 9, 3}), {0.8, 0.8}, 8, kCoverWidth, kCoverHeight);
   const auto composed = [&](PatchCoder* coder) {
     image::Picture picture =
         image::make_picture(kCoverWidth,

@@ -47,8 +47,8 @@ void sharpen(std::vector<float>& change,
              const PixelBox& frame,
              const Sensor& sensor) {
   if (!(sensor.sharpening > 0)) return;
-  const std::vector<float> soft =
-      blurred(change, patch, patch, frame, gaussian(sensor.sharpening_px));
+  const std::vector<float> kernel = gaussian(sensor.sharpening_px);
+  const std::vector<float> soft = blurred(change, patch, patch, frame, kernel, kernel);
   const auto amount = static_cast<float>(sensor.sharpening);
   for (std::size_t i = 0; i < change.size(); ++i) change[i] += amount * (change[i] - soft[i]);
 }

@@ -43,7 +43,7 @@ TEST(Haze, FollowsKoschmieder) {
 
 TEST(Spread, KeepsLightAndCoverageAndCentre) {
   const image::Layer layer = square(5, 1, 0.4F);
-  const image::Layer soft = spread(layer, 0.8, 0, 60, 60);
+  const image::Layer soft = spread(layer, {0.8, 0.8}, 0, 60, 60);
   double light = 0, coverage = 0, alpha = 0, x_sum = 0;
   for (int y = soft.patch.y; y < soft.patch.bottom(); ++y)
     for (int x = soft.patch.x; x < soft.patch.right(); ++x) {
@@ -63,7 +63,7 @@ TEST(Spread, KeepsLightAndCoverageAndCentre) {
 // the Gaussian's distribution function at the pixels' centres.
 TEST(Spread, AStepBecomesTheErrorFunction) {
   const double sigma = 1.1;
-  const image::Layer soft = spread(square(40, 1, 1, 10), sigma, 0, 60, 60);
+  const image::Layer soft = spread(square(40, 1, 1, 10), {sigma, sigma}, 0, 60, 60);
   for (int x = 8; x < 13; ++x)
     EXPECT_NEAR(soft.pixels[soft.index(x, 30)].alpha,
                 0.5 * (1 + std::erf((x + 0.5 - 10) / (sigma * std::sqrt(2.0)))),
@@ -71,15 +71,29 @@ TEST(Spread, AStepBecomesTheErrorFunction) {
         << x;
 }
 
+TEST(Spread, HasADeviationAlongEachAxis) {
+  const image::Layer soft = spread(square(1, 1, 1, 30), {0.6, 1.1}, 0, 60, 60);
+  double across_px2 = 0, down_px2 = 0;
+  for (int y = soft.patch.y; y < soft.patch.bottom(); ++y)
+    for (int x = soft.patch.x; x < soft.patch.right(); ++x) {
+      const double alpha = double(soft.pixels[soft.index(x, y)].alpha);
+      across_px2 += alpha * (x - 30) * (x - 30);
+      down_px2 += alpha * (y - 30) * (y - 30);
+    }
+  // Of the Gaussian and of the pixel that it is integrated over, less what lies beyond its reach.
+  EXPECT_NEAR(across_px2, 0.6 * 0.6 + 1.0 / 12, 0.02);
+  EXPECT_NEAR(down_px2, 1.1 * 1.1 + 1.0 / 12, 0.04);
+}
+
 TEST(Spread, IsCutByTheFrameAlone) {
-  const image::Layer soft = spread(square(4, 1, 1, 0), 1.0, 2, 60, 60);
+  const image::Layer soft = spread(square(4, 1, 1, 0), {1.0, 1.0}, 2, 60, 60);
   EXPECT_EQ(soft.patch, (PixelBox{0, 0, 9, 9}));
 }
 
 // A square of 40 pixels from (20, 20) on, whole, and in a frame that begins at (40, 40).
 TEST(Spread, WhatTheFrameCutsContinuesBeyondIt) {
-  const image::Layer whole = spread(square(40, 0.8F, 0.5F, 20), 1.7, 3, 100, 100);
-  const image::Layer cut = spread(square(20, 0.8F, 0.5F, 0), 1.7, 3, 60, 60);
+  const image::Layer whole = spread(square(40, 0.8F, 0.5F, 20), {1.7, 1.7}, 3, 100, 100);
+  const image::Layer cut = spread(square(20, 0.8F, 0.5F, 0), {1.7, 1.7}, 3, 60, 60);
   for (int y = 0; y < cut.patch.bottom(); ++y)
     for (int x = 0; x < cut.patch.right(); ++x) {
       const std::size_t i = cut.index(x, y), j = whole.index(x + 40, y + 40);
@@ -146,7 +160,7 @@ TEST(Noise, HasItsCurveItsCorrelationAndAnotherFaceEachFrame) {
 }
 
 TEST(Matte, WithASensorTouchesNothingBeyondItsReach) {
-  const image::Layer layer = spread(square(6, 1, 0.9F), 0.7, 3, 60, 60);
+  const image::Layer layer = spread(square(6, 1, 0.9F), {0.7, 0.7}, 3, 60, 60);
   image::Picture picture = grey_picture(60, 90);
   MatteOptions options;
   options.sensor.sharpening = 1;
@@ -177,7 +191,7 @@ image::Picture even_picture(int side, const image::Colour& colour) {
 TEST(Matte, ASensorDoesTheSameToPlanesOfRedGreenAndBlueAsToLumaAndChroma) {
   image::Layer layer = square(12, 0.8F, 0.3F);
   for (image::LayerPixel& pixel : layer.pixels) pixel.red = 0.4F, pixel.blue = 0.1F;
-  layer = spread(layer, 0.7, 9, 60, 60);
+  layer = spread(layer, {0.7, 0.7}, 9, 60, 60);
   Sensor noisy, sharp, soft, all;
   noisy.noise_floor = 2e-4;
   sharp.sharpening = 1;
@@ -205,7 +219,7 @@ TEST(Matte, ASensorDoesTheSameToPlanesOfRedGreenAndBlueAsToLumaAndChroma) {
 
 // What does not reach a pixel leaves its bits, and a grey intruder stays grey.
 TEST(Matte, OnRedGreenAndBlueASensorKeepsGreyGreyAndTheRestUntouched) {
-  const image::Layer layer = spread(square(6, 1, 0.02F), 0.7, 9, 60, 60);
+  const image::Layer layer = spread(square(6, 1, 0.02F), {0.7, 0.7}, 9, 60, 60);
   image::Picture picture =
       image::make_picture(60, 60, {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
   for (image::Plane& plane : picture.planes)

@@ -95,14 +95,16 @@ std::vector<float> blurred(const std::vector<float>& values,
                            const PixelBox& from,
                            const PixelBox& to,
                            const PixelBox& frame,
-                           const std::vector<float>& kernel) {
-  const int reach = static_cast<int>(kernel.size()) / 2;
-  const int left = to.x == frame.x ? reach : 0;
-  const int top = to.y == frame.y ? reach : 0;
+                           const std::vector<float>& across,
+                           const std::vector<float>& down) {
+  const int reach_x = static_cast<int>(across.size()) / 2;
+  const int reach_y = static_cast<int>(down.size()) / 2;
+  const int left = to.x == frame.x ? reach_x : 0;
+  const int top = to.y == frame.y ? reach_y : 0;
   const PixelBox around{to.x - left,
                         to.y - top,
-                        to.width + left + (to.right() == frame.right() ? reach : 0),
-                        to.height + top + (to.bottom() == frame.bottom() ? reach : 0)};
+                        to.width + left + (to.right() == frame.right() ? reach_x : 0),
+                        to.height + top + (to.bottom() == frame.bottom() ? reach_y : 0)};
   std::vector<float> plane(pixels_in(around), 0.0F);
   for (int y = around.y; y < around.bottom(); ++y)
     for (int x = around.x; x < around.right(); ++x) {
@@ -111,7 +113,7 @@ std::vector<float> blurred(const std::vector<float>& values,
       if (from.contains(at_x, at_y))
         plane[index_in(around, x, y)] = values[index_in(from, at_x, at_y)];
     }
-  blur(plane, around.width, around.height, kernel);
+  blur(plane, around.width, around.height, across, down);
   if (around == to) return plane;
   std::vector<float> result;
   result.reserve(pixels_in(to));
@@ -122,20 +124,24 @@ std::vector<float> blurred(const std::vector<float>& values,
   return result;
 }
 
-image::Layer spread(
-    const image::Layer& layer, double sigma_px, int margin_px, int frame_width, int frame_height) {
+image::Layer spread(const image::Layer& layer,
+                    const PointSpread& point_spread,
+                    int margin_px,
+                    int frame_width,
+                    int frame_height) {
   if (layer.empty()) return layer;
-  const int reach = sigma_px > 0 ? std::max(1, reach_of(sigma_px)) : 0;
+  const std::vector<float> across = gaussian(point_spread.across_px);
+  const std::vector<float> down = gaussian(point_spread.down_px);
+  const int reach = static_cast<int>(std::max(across.size(), down.size()) / 2);
   const int more = reach + margin_px;
   if (more == 0) return layer;
   const PixelBox frame{0, 0, frame_width, frame_height};
   image::Layer result(*intersection(wider(layer.patch, more), frame));
   result.areas = layer.areas;
-  const std::vector<float> kernel = gaussian(sigma_px);
   const auto of_layer = [&](const auto& get) {
     std::vector<float> values(layer.pixels.size());
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = get(i);
-    return blurred(values, layer.patch, result.patch, frame, kernel);
+    return blurred(values, layer.patch, result.patch, frame, across, down);
   };
   const auto alpha = of_layer([&](std::size_t i) { return layer.pixels[i].alpha; });
   const auto red = of_layer([&](std::size_t i) { return layer.pixels[i].red; });
@@ -153,7 +159,7 @@ image::Layer spread(
     image::Coverage& spread = result.coverage.emplace_back();
     if (coverage.empty()) continue;
     spread.box = *intersection(wider(coverage.box, reach), result.patch);
-    spread.alpha = blurred(coverage.alpha, coverage.box, spread.box, frame, kernel);
+    spread.alpha = blurred(coverage.alpha, coverage.box, spread.box, frame, across, down);
     each_pixel(spread, [&](int x, int y, float& share) {
       if (!(result.pixels[result.index(x, y)].alpha > 0)) share = 0;
     });

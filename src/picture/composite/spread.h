@@ -17,12 +17,20 @@ void add_haze(image::Layer& layer,
               const std::array<double, 3>& extinction_per_km,
               const std::array<double, 3>& airlight);
 
-// The layer after a Gaussian point spread of this standard deviation. Its patch grows by the reach
-// of the Gaussian (three deviations) and by `margin_px`, and is clipped to the frame. Coverage is
-// blurred with the colour, so that the labels agree with the picture. What the frame cuts continues
-// beyond it as it is at the frame's edge.
-image::Layer spread(
-    const image::Layer& layer, double sigma_px, int margin_px, int frame_width, int frame_height);
+// The standard deviations of a Gaussian point spread along the rows and along the columns, px.
+struct PointSpread {
+  double across_px = 0, down_px = 0;
+};
+
+// The layer after a point spread. Its patch grows by the reach of the Gaussian (three deviations)
+// and by `margin_px`, and is clipped to the frame. Coverage is blurred with the colour, so that the
+// labels agree with the picture. What the frame cuts continues beyond it as it is at the frame's
+// edge.
+image::Layer spread(const image::Layer& layer,
+                    const PointSpread& point_spread,
+                    int margin_px,
+                    int frame_width,
+                    int frame_height);
 
 // A Gaussian integrated over each pixel, with a sum of 1. The length is odd; {1} for a deviation of
 // 0.
@@ -45,6 +53,7 @@ std::vector<float> blurred(const std::vector<float>& values,
                            const PixelBox& from,
                            const PixelBox& to,
                            const PixelBox& frame,
-                           const std::vector<float>& kernel);
+                           const std::vector<float>& across,
+                           const std::vector<float>& down);
 
 }  // namespace airtruth::composite

@@ -166,6 +166,8 @@ struct CameraModel {
   // [optics]
   // Standard deviation of a Gaussian.
   std::optional<double> point_spread_px;
+  // Standard deviation by which the picture is softer along its columns than along its rows.
+  std::optional<double> vertical_spread_px;
   // Amount of an unsharp mask.
   std::optional<double> sharpening;
   // Standard deviation of the unsharp mask's Gaussian.

@@ -42,8 +42,10 @@ image::Layer through_air_and_lens(image::Layer layer,
       airlight[c] = model.airlight ? (*model.airlight)[c] : double(ambient.airlight[c]);
     composite::add_haze(layer, *model.extinction_per_km, airlight);
   }
-  return composite::spread(
-      layer, model.point_spread_px.value_or(0), margin_px(model), size.width, size.height);
+  const double across_px = model.point_spread_px.value_or(0);
+  const composite::PointSpread point_spread{
+      across_px, std::hypot(across_px, model.vertical_spread_px.value_or(0))};
+  return composite::spread(layer, point_spread, margin_px(model), size.width, size.height);
 }
 
 // The light of the clip, changed by [weather]. What the air between adds stays the clip's.
