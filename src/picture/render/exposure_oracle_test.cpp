@@ -268,8 +268,8 @@ void compare_covered(const image::Layer& layer,
   constexpr double kLimit = (composite::kCoveredAlpha - 0.5) / 255;
   // Within this distance from the limit, either answer is correct.
   constexpr double kOff = 0.01;
-  const auto covered =
-      composite::covered(composite::spread(layer, kSigmaPx, 0, view.width, view.height), 0);
+  const auto covered = composite::covered(
+      composite::spread(layer, {kSigmaPx, kSigmaPx}, 0, view.width, view.height), 0);
   std::optional<PixelBox> surely, perhaps;
   const PixelBox& p = layer.patch;
   const PixelBox frame{0, 0, view.width, view.height};
