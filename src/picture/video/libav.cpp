@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdarg>
 #include <cstring>
 #include <new>
 #include <utility>
@@ -68,6 +69,21 @@ Samples samples_of(Plane& plane) {
   return {plane.row(0), plane.height, plane.width, Eigen::OuterStride<>(plane.stride)};
 }
 
+// libav's own choice. It marks the decoders whose messages are counted: others in the process may
+// have objects of their own in `opaque`.
+AVPixelFormat chosen_format(AVCodecContext* codec, const AVPixelFormat* formats) {
+  return avcodec_default_get_format(codec, formats);
+}
+
+// libav calls it from any thread of a decoder.
+void count_message(void* object, int level, const char*, va_list) {
+  constexpr int kLevelBits = 0xff;  // the bits above are a colour
+  if (object == nullptr || (level & kLevelBits) > AV_LOG_INFO) return;
+  if (*static_cast<const AVClass**>(object) != avcodec_get_class()) return;
+  const auto& codec = *static_cast<const AVCodecContext*>(object);
+  if (codec.get_format == chosen_format) ++*static_cast<std::atomic<int>*>(codec.opaque);
+}
+
 }  // namespace
 
 std::string reason(int error) {
@@ -76,7 +92,15 @@ std::string reason(int error) {
   return text;
 }
 
-void keep_libav_quiet() { av_log_set_level(AV_LOG_QUIET); }
+void keep_libav_quiet() {
+  av_log_set_level(AV_LOG_QUIET);
+  av_log_set_callback(count_message);
+}
+
+void count_messages(AVCodecContext& codec, std::atomic<int>& count) {
+  codec.get_format = chosen_format;
+  codec.opaque = &count;
+}
 
 std::optional<Layout> layout_of(AVPixelFormat format) {
   const AVPixFmtDescriptor* d = av_pix_fmt_desc_get(format);

@@ -12,6 +12,7 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -49,8 +50,14 @@ using ScalerPtr = std::unique_ptr<SwsContext, FreeScaler>;
 // libav's own description of an error code.
 std::string reason(int error);
 
-// Turns off libav's output to standard error: the library never prints.
+// Turns off libav's output to standard error: the library never prints. libav has one receiver of
+// messages in a process, which is then this module's.
 void keep_libav_quiet();
+
+// Counts what libav says of an unopened decoder from now on, its information included. A decoder of
+// several threads tells of concealed errors in no other way that can be relied on: it copies the
+// flags of a frame while another thread may yet set them.
+void count_messages(AVCodecContext& codec, std::atomic<int>& count);
 
 // FFmpeg 5.1 (Debian 12) and 7.1 (Debian 13) name these two differently.
 

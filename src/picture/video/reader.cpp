@@ -2,9 +2,12 @@
 #include "picture/video/reader.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <deque>
 #include <memory>
+#include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -54,6 +57,18 @@ bool is_picture_file(const AVFormatContext& input) {
   return std::string_view(input.iformat->name).ends_with("_pipe") && input.nb_streams == 1;
 }
 
+bool is_flawed(const AVFrame& frame) {
+  return frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0;
+}
+
+// Passes each text on once, though what it is about may be read anew.
+Warn once(Warn warn) {
+  return [warn = std::move(warn),
+          told = std::make_shared<std::set<std::string>>()](const std::string& text) {
+    if (told->insert(text).second) airtruth::warn(warn, text);
+  };
+}
+
 std::optional<double> quantiser_of(const AVFrame& frame) {
   const AVFrameSideData* data = av_frame_get_side_data(&frame, AV_FRAME_DATA_VIDEO_ENC_PARAMS);
   if (data == nullptr) return std::nullopt;
@@ -75,6 +90,8 @@ struct Reader::State {
   // One file for each frame; empty for a video.
   std::vector<std::filesystem::path> pictures;
   std::size_t next_picture = 0;
+  // Number of messages of the decoder and of flawed frames.
+  std::atomic<int> doubts = 0;
   CodecPtr codec;
   PacketPtr packet;
   FramePtr frame;
@@ -93,7 +110,6 @@ struct Reader::State {
   std::int64_t corrupt = 0;
   // Number of damaged frames among those that are handed out.
   std::int64_t damaged = 0;
-  bool end_is_told = false;
   // Number of frames that the decoder has returned.
   std::int64_t decoded = 0;
   std::int64_t handed = 0;
@@ -131,6 +147,46 @@ struct Reader::State {
     state->open_input();
     state->open_codec();
     return state;
+  }
+
+  // Opened, and decoded up to the first frame that is handed out.
+  static std::unique_ptr<State> begun(const std::filesystem::path& path,
+                                      const ReaderOptions& options,
+                                      Warn warn) {
+    auto state = opened(path, options, warn);
+    if (options.first_frame > 0 && !state->go_to_first_frame() && !state->is_in_doubt()) {
+      const bool is_known_end = state->info.frame_count_estimate <= options.first_frame;
+      if (!is_known_end)
+        airtruth::warn(warn,
+                       fmt::format("{}: its frames cannot be found without decoding; the {} before "
+                                   "first_frame are decoded",
+                                   path.string(),
+                                   options.first_frame));
+      state = opened(path, options, {});  // what it says was said
+    }
+    const bool holds_frame = state->look_ahead();
+    state->warn = std::move(warn);
+    if (!holds_frame && !state->is_in_doubt()) state->explain_no_frame();
+    return state;
+  }
+
+  // The same file read from the beginning by one thread.
+  std::unique_ptr<State> by_one_thread() const {
+    ReaderOptions alone = options;
+    alone.threads = 1;
+    return begun(path, alone, warn);
+  }
+
+  void explain_no_frame() const {
+    if (decoded == 0)
+      fail(fmt::format(
+          "holds no frame of at most {} million px that can be decoded; expected a video",
+          kMaxPixels / 1'000'000));
+    if (options.frame_count && *options.frame_count == 0) return;
+    const std::string fault = fmt::format(
+        "holds {} frames; first_frame = {} is past its end", decoded, options.first_frame);
+    if (options.where.file.empty()) fail(fault);
+    throw Error(path.string() + " " + fault, options.where);
   }
 
   void open_input() {
@@ -180,6 +236,7 @@ struct Reader::State {
     codec->thread_count = options.threads > 0 ? options.threads : usable_processors();
     codec->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
     codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
+    count_messages(*codec, doubts);
     if (options.with_quantiser) codec->export_side_data |= AV_CODEC_EXPORT_DATA_VIDEO_ENC_PARAMS;
     codec->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER;
     // A picture is whole or none; frames of a video are damaged until the next key frame. libav's
@@ -188,6 +245,7 @@ struct Reader::State {
       codec->err_recognition |= AV_EF_EXPLODE;
     if (const int opened = avcodec_open2(codec.get(), nullptr, nullptr); opened < 0)
       fail(std::string("cannot be decoded (") + codec->codec->name + "): " + reason(opened));
+    doubts = 0;  // some decoders tell their version
     packet.reset(av_packet_alloc());
     frame.reset(av_frame_alloc());
     info.codec = codec->codec->name;
@@ -321,9 +379,8 @@ struct Reader::State {
       const std::int64_t pts = frame->best_effort_timestamp;
       // Pictures that are shown before the key frame may refer to those before it.
       if (pts < key.pts) continue;
-      const bool is_whole =
-          frame->decode_error_flags == 0 && (frame->flags & AV_FRAME_FLAG_CORRUPT) == 0;
-      if (!is_whole || corrupt != corrupt_before || index.frame_at(pts) != expected) return false;
+      if (is_flawed(*frame) || corrupt != corrupt_before || index.frame_at(pts) != expected)
+        return false;
       if (expected++ == target) return true;
     }
     return false;
@@ -422,11 +479,21 @@ struct Reader::State {
     broken = true;
   }
 
-  // Fills `frame`; false at the end.
+  // True once several threads have met what may be a fault. What libav conceals it takes from
+  // frames that other threads still decode, so that pixels and flags depend on the threads and on
+  // the run. No frame of such a decoder is handed out any more. Those before are sound: the frame
+  // of a packet comes after all before it are decoded. Pictures depend on no other.
+  bool is_in_doubt() const {
+    return codec->thread_count != 1 && pictures.empty() && (doubts > 0 || corrupt > 0);
+  }
+
+  // Fills `frame`; false at the end, and once it is in doubt.
   bool decode_one() {
     for (;;) {
       av_frame_unref(frame.get());
       const int got = avcodec_receive_frame(codec.get(), frame.get());
+      if (is_flawed(*frame)) ++doubts;
+      if (is_in_doubt()) return false;
       // Of a stream that is cut within a group of pictures, the first ones refer to pictures that
       // are gone. They are no frames, as ffmpeg, ffprobe and OpenCV count.
       if (got == 0 && !has_whole_frame && (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0) continue;
@@ -515,6 +582,37 @@ struct Reader::State {
     return image::is_cut(around, static_cast<std::size_t>(index - first_difference));
   }
 
+  // The next frame to hand out; empty at the end, and once it is in doubt.
+  std::optional<Frame> take() {
+    const std::size_t held_back = options.with_cuts ? std::size_t{image::kCutNeighbours} : 0;
+    while (ahead.size() < 1 + held_back && look_ahead()) {
+    }
+    if (ahead.empty() || is_in_doubt()) return std::nullopt;
+    Frame one = std::move(ahead.front());
+    ahead.pop_front();
+    if (options.with_cuts) one.begins_shot = !one.damaged && begins_shot(one.index);
+    return one;
+  }
+
+  std::optional<Frame> shown_at(double time_s) {
+    const double step_s = static_cast<double>(pts_step) * info.time_base.value();
+    const auto wanted =
+        *first_pts +
+        static_cast<std::int64_t>(std::floor((time_s + 0.5 * step_s) / info.time_base.value()));
+    if (!seek(wanted)) return std::nullopt;
+    // The frame that is shown at a time is the last one that does not begin after it.
+    std::optional<Frame> shown;
+    while (auto one = next()) {
+      if (shown && one->pts > wanted) break;
+      shown = std::move(one);
+      if (shown->pts >= wanted) break;
+    }
+    if (shown)
+      shown->index = std::llround(static_cast<double>(shown->pts - *first_pts) /
+                                  static_cast<double>(pts_step));
+    return shown;
+  }
+
   // The parts of a recording, put together, may each begin their time stamps anew.
   std::int64_t after_reset(std::int64_t pts) {
     if (!std::exchange(reset_is_told, true))
@@ -544,7 +642,6 @@ struct Reader::State {
   }
 
   void tell_end() {
-    if (std::exchange(end_is_told, true)) return;
     if (corrupt > 0 || damaged > 0)
       airtruth::warn(warn,
                      fmt::format("{}: {} corrupt packets; {} frames are flagged damaged",
@@ -557,8 +654,7 @@ struct Reader::State {
 
   Frame to_frame() {
     Frame result;
-    const bool bad = frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
-    if (bad) {
+    if (is_flawed(*frame)) {
       broken = true;
     } else if (is_key_frame(*frame)) {
       broken = false;
@@ -591,30 +687,8 @@ struct Reader::State {
 };
 
 Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, Warn warn)
-    : state_(State::opened(path, options, warn)) {
-  if (options.first_frame > 0 && !state_->go_to_first_frame()) {
-    const bool is_known_end = state_->info.frame_count_estimate <= options.first_frame;
-    if (!is_known_end)
-      airtruth::warn(warn,
-                     fmt::format("{}: its frames cannot be found without decoding; the {} before "
-                                 "first_frame are decoded",
-                                 path.string(),
-                                 options.first_frame));
-    state_ = State::opened(path, options, {});  // what it says was said
-  }
-  const bool holds_frame = state_->look_ahead();
-  state_->warn = std::move(warn);
-  if (holds_frame) return;
-  if (state_->decoded == 0)
-    state_->fail(
-        fmt::format("holds no frame of at most {} million px that can be decoded; expected a video",
-                    kMaxPixels / 1'000'000));
-  if (!options.frame_count || *options.frame_count > 0) {
-    const std::string fault = fmt::format(
-        "holds {} frames; first_frame = {} is past its end", state_->decoded, options.first_frame);
-    if (options.where.file.empty()) state_->fail(fault);
-    throw Error(path.string() + " " + fault, options.where);
-  }
+    : state_(State::begun(path, options, once(std::move(warn)))) {
+  if (state_->is_in_doubt()) state_ = state_->by_one_thread();
 }
 
 void expect_rate(const std::filesystem::path& video,
@@ -637,38 +711,23 @@ Reader& Reader::operator=(Reader&&) noexcept = default;
 const StreamInfo& Reader::info() const { return state_->info; }
 
 std::optional<Frame> Reader::next() {
-  State& state = *state_;
-  const std::size_t held_back = state.options.with_cuts ? std::size_t{image::kCutNeighbours} : 0;
-  while (state.ahead.size() < 1 + held_back && state.look_ahead()) {
+  std::optional<Frame> frame = state_->take();
+  if (!frame && state_->is_in_doubt()) {
+    const std::int64_t taken = state_->handed - std::ssize(state_->ahead);
+    state_ = state_->by_one_thread();
+    for (std::int64_t k = 0; k <= taken; ++k) frame = state_->take();
   }
-  if (state.ahead.empty()) {
-    state.tell_end();
-    return std::nullopt;
-  }
-  Frame frame = std::move(state.ahead.front());
-  state.ahead.pop_front();
-  if (state.options.with_cuts) frame.begins_shot = !frame.damaged && state.begins_shot(frame.index);
+  if (!frame) state_->tell_end();
   return frame;
 }
 
 std::optional<Frame> Reader::at(double time_s) {
-  State& state = *state_;
-  const double step_s = static_cast<double>(state.pts_step) * state.info.time_base.value();
-  const auto wanted =
-      *state.first_pts +
-      static_cast<std::int64_t>(std::floor((time_s + 0.5 * step_s) / state.info.time_base.value()));
-  if (!state.seek(wanted)) return std::nullopt;
-  // The frame that is shown at a time is the last one that does not begin after it.
-  std::optional<Frame> shown;
-  while (auto decoded = state.next()) {
-    if (shown && decoded->pts > wanted) break;
-    shown = std::move(decoded);
-    if (shown->pts >= wanted) break;
-  }
-  if (shown)
-    shown->index = std::llround(static_cast<double>(shown->pts - *state.first_pts) /
-                                static_cast<double>(state.pts_step));
-  return shown;
+  std::optional<Frame> shown = state_->shown_at(time_s);
+  if (!state_->is_in_doubt()) return shown;
+  const auto first_pts = state_->first_pts;
+  state_ = state_->by_one_thread();
+  state_->first_pts = first_pts;
+  return state_->shown_at(time_s);
 }
 
 double time_of_first_frame_s(const std::filesystem::path& path, const ReaderOptions& options) {

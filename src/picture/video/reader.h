@@ -100,7 +100,9 @@ struct ReaderOptions {
   std::optional<std::int64_t> frame_count;
   // Of numbered images, in frames a second.
   std::optional<double> picture_rate_hz = {};
-  // Number of decoder threads; 0: one for each core.
+  // Number of decoder threads; 0: one for each core. From the first sign of a fault on, a video is
+  // read by one, from its beginning to the frame that is next and on: what libav conceals would
+  // depend on the threads.
   int threads = 0;
   // True: the reader fills Frame::quantiser where the decoder exports it.
   bool with_quantiser = false;

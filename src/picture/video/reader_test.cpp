@@ -484,6 +484,42 @@ TEST_F(Video, TheSameFramesOfATruncatedStreamAreDamagedForAnyNumberOfThreads) {
     EXPECT_EQ(damaged_frames(folder_ / "cut.mp4", threads), one) << threads;
 }
 
+// Bytes within pictures are changed, and a packet of the transport stream is lost. The ffmpeg
+// program says what one thread makes of it.
+TEST_F(Video, ADamagedVideoHasTheSameFramesForAnyNumberOfThreads) {
+  for (const std::string file : {"bad.mp4", "bad.ts"}) {
+    ffmpeg(
+        "-f lavfi -i testsrc2=s=160x120:r=25:d=4 -vf noise=alls=8:allf=t:all_seed=1 "
+        "-filter_threads 1 -threads 1 -pix_fmt yuv420p -c:v libx264 -g 12 " +
+        file);
+    std::string bytes = read_file(folder_ / file);
+    constexpr std::size_t kTsPacketBytes = 188;
+    const std::size_t middle = bytes.size() / 2 / kTsPacketBytes * kTsPacketBytes;
+    for (std::size_t at = middle + 60; at < bytes.size() / 4 * 3; at += 20 * kTsPacketBytes)
+      for (std::size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<char>(bytes[at + i] ^ 0x5a);
+    if (file == "bad.ts") bytes.erase(middle + 20 * kTsPacketBytes, kTsPacketBytes);
+    write_file(folder_ / file, bytes);
+    ffmpeg("-v fatal -threads 1 -i " + file +
+           " -f rawvideo -fps_mode passthrough -pix_fmt yuv420p raw.bin");
+    const std::string expected = read_file(folder_ / "raw.bin");
+    const std::vector<bool> damaged = damaged_frames(folder_ / file, 1);
+    EXPECT_THAT(damaged, testing::AllOf(testing::Contains(true), testing::Contains(false)));
+    Reader alone(folder_ / file, {.threads = 1});
+    for (const int threads : {1, 2, 5}) {
+      Reader reader(folder_ / file, {.threads = threads, .with_cuts = true});
+      EXPECT_TRUE(all_planes(reader) == expected) << file << ", " << threads << " threads";
+      EXPECT_EQ(damaged_frames(folder_ / file, threads), damaged) << file << ", " << threads;
+      Reader sought(folder_ / file, {.threads = threads});
+      for (const double time_s : {0.2, 2.2, 3.6, 0.4}) {
+        const auto frame = sought.at(time_s), same = alone.at(time_s);
+        ASSERT_TRUE(frame && same);
+        EXPECT_TRUE(planes_of(frame->picture) == planes_of(same->picture)) << file << time_s;
+        EXPECT_EQ(frame->damaged, same->damaged) << file << time_s;
+      }
+    }
+  }
+}
+
 TEST_F(Video, TruncatedMatroskaEndsEarlyToo) {
   ffmpeg("-f lavfi -i testsrc2=s=160x120:r=25:d=4 -c:v libx264 -g 5 whole.mkv");
   const std::string bytes = read_file(folder_ / "whole.mkv");
