@@ -143,7 +143,7 @@ TEST(CameraKeys, AnEffectNeedsAValueAboveZero) {
   EXPECT_TRUE(is_above_zero(model, haze));
 }
 
-TEST(CameraKeys, TwelveCanBeMeasured) {
+TEST(CameraKeys, ThirteenCanBeMeasured) {
   CameraModel model;
   int count = 0;
   const auto visit = [&](const char* name, const auto&) {
@@ -151,7 +151,7 @@ TEST(CameraKeys, TwelveCanBeMeasured) {
     ++count;
   };
   for_each_camera_key(visit, model);
-  EXPECT_EQ(count, 12);
+  EXPECT_EQ(count, 13);
   EXPECT_EQ(camera_key("sensor.codec_steps"), nullptr);
 }
 
