@@ -17,7 +17,7 @@
 // Example: of a clip of sky alone, calibrate({"sky.mp4"}) has a noise of one value, and no point
 // spread but that of the profile:
 //   {"sensor.noise_gain", {{8.9e-05, 9.4e-06}}, "", "", "", ""}
-//   {"optics.point_spread_px", {{0.44, 0.15}}, "", "", "of the median over 3 cameras; ...", ""}
+//   {"optics.point_spread_px", {{0.42, 0.22}}, "", "", "of the median over 3 cameras; ...", ""}
 namespace airtruth {
 
 struct CalibrateOptions {

@@ -86,7 +86,7 @@ def calibrate(
     (6, None, "the decoder of 'ffv1' does not report its quantiser")
     >>> spread = found.quantities["optics"]["point_spread_px"]
     >>> spread.value, round(spread.sigma, 2), spread.source
-    (0.44, 0.15, 'of the median over 3 cameras; the clip does not show it')
+    (0.42, 0.22, 'of the median over 3 cameras; the clip does not show it')
     >>> pathlib.Path("camera.toml").write_text(found.toml) > 100
     True
     """

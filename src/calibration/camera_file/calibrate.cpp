@@ -244,7 +244,7 @@ class Session {
         fmt::format("across an edge {:.2f} px from 10 to 90 %, by {} edges",
                     result_.edge.spread_px,
                     result_.edge.edges);
-    put(quantities().vertical_spread, edges_.vertical(*found, codec_step()));
+    put(quantities().vertical_spread, found->vertical_spread_px);
     put(quantities().chroma_spread, edges_.chroma(*found, codec_step()));
   }
 

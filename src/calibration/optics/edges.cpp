@@ -316,6 +316,7 @@ Measured<StepResponse> EdgeMeter::result(double codec_step) {
   Estimate& spread = response.point_spread_px;
   const double limited = share_limited(sharpest_first) * most_at_once_;
   spread.sigma = std::hypot(spread.sigma, spread.value * kMeanExcessInWorld / limited);
+  part_by_axis(response, codec_step);
   profile_ = edge_profile(edges, response, tone_);
   return response;
 }
@@ -329,25 +330,31 @@ Estimate EdgeMeter::spread_by(const std::vector<const Edge*>& sharpest_first,
   return spread;
 }
 
-Measured<Estimate> EdgeMeter::vertical(const StepResponse& response, double codec_step) const {
+void EdgeMeter::part_by_axis(StepResponse& response, double codec_step) const {
   std::vector<const Edge*> along_rows, along_columns;
   for (const Edge* edge : usable(codec_step)) {
     if (std::abs(edge->line.ny) > kMinCosineToAxis) along_rows.push_back(edge);
     if (std::abs(edge->line.nx) > kMinCosineToAxis) along_columns.push_back(edge);
   }
-  if (std::min(along_rows.size(), along_columns.size()) < kMinEdges)
-    return NotMeasured{
-        fmt::format("the clip shows {} clean edges along its rows and {} along its "
-                    "columns; it takes {} of each",
-                    along_rows.size(),
-                    along_columns.size(),
-                    kMinEdges)};
+  if (std::min(along_rows.size(), along_columns.size()) < kMinEdges) {
+    response.vertical_spread_px =
+        NotMeasured{fmt::format("the clip shows {} clean edges along its rows and {} along its "
+                                "columns; it takes {} of each",
+                                along_rows.size(),
+                                along_columns.size(),
+                                kMinEdges)};
+    return;
+  }
   const Estimate down = spread_by(by_width(std::move(along_rows)), response);
   const Estimate across = spread_by(by_width(std::move(along_columns)), response);
   const double variance = down.value * down.value - across.value * across.value;
   const double error = 2 * std::hypot(down.value * down.sigma, across.value * across.sigma);
-  if (variance < 2 * error) return Estimate{0, std::sqrt(error)};
-  return Estimate{std::sqrt(variance), error / (2 * std::sqrt(variance))};
+  if (variance < 2 * error) {
+    response.vertical_spread_px = Estimate{0, std::sqrt(error)};
+    return;
+  }
+  response.point_spread_px = across;
+  response.vertical_spread_px = Estimate{std::sqrt(variance), error / (2 * std::sqrt(variance))};
 }
 
 Measured<Estimate> EdgeMeter::chroma(const StepResponse& response, double codec_step) const {

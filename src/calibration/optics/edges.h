@@ -35,16 +35,15 @@ class EdgeMeter {
   // of one frame: the edges of other frames may be the same ones again, as those of one aircraft
   // against the sky are.
   //
+  // The spread along the rows and along the columns is by edges that lie within 30 degrees of the
+  // columns and of the rows. A picture of two fields made whole (deinterlaced) is softer along its
+  // columns, and so is one scaled up in height alone. The vertical spread is 0 where the difference
+  // of the two variances is below twice its error, and not measured where either kind has fewer
+  // than 12 edges; edges of all directions then give the point spread.
+  //
   // `codec_step`: step of the codec's quantiser in code values; 0 if it is not known. Quantisation
   // softens weak edges. Where enough edges are high compared with the step, only those are used.
   Measured<StepResponse> result(double codec_step = 0);
-  // How much softer the picture is along its columns than along its rows, a standard deviation in
-  // px: the root of the difference of two variances, of the camera's spread by edges that lie along
-  // the rows and by edges that lie along the columns, each within 30 degrees. A picture of two
-  // fields made whole (deinterlaced) is softer along its columns, and so is one scaled up in height
-  // alone. 0 where the difference is below twice its error. Not measured where either kind has
-  // fewer than 12 edges. The arguments are as of chroma().
-  Measured<Estimate> vertical(const StepResponse& response, double codec_step = 0) const;
   // The extra spread of chroma beyond luma, a standard deviation in luma pixels: the square root of
   // the median difference between the variances of chroma and luma across the same edges, those
   // that are nearly as sharp as `response`, the answer of result() with the same `codec_step`.
@@ -70,7 +69,9 @@ class EdgeMeter {
   std::vector<const Edge*> usable(double codec_step) const;
   // The edges, the sharpest first.
   static std::vector<const Edge*> by_width(std::vector<const Edge*> edges);
-  // The spread of the camera by these edges, with the error that sharp_ones() states.
+  // Parts the spread along the columns from that along the rows.
+  void part_by_axis(StepResponse& response, double codec_step) const;
+  // The spread of the camera by these edges under a mask that is known, with its error.
   Estimate spread_by(const std::vector<const Edge*>& by_width, const StepResponse& mask) const;
   static std::vector<const StepEdge*> sharp_ones(std::vector<const Edge*> by_width);
   // The share of edges that are nearly as sharp as the sharpest.

@@ -106,17 +106,16 @@ TEST(Edges, SofterAlongTheColumns) {
     const auto found = meter.result();
     ASSERT_TRUE(found) << found.why();
     EXPECT_NEAR(found->point_spread_px.value, kSpreadPx, 0.05);
-    const auto vertical = meter.vertical(*found);
-    ASSERT_TRUE(vertical) << vertical.why();
-    EXPECT_NEAR(vertical->value, beyond_px, 0.05);
+    ASSERT_TRUE(found->vertical_spread_px) << found->vertical_spread_px.why();
+    EXPECT_NEAR(found->vertical_spread_px->value, beyond_px, 0.05);
   }
 }
 
 TEST(Edges, AlongTheColumnsAloneSayNothingOfTheDifference) {
   EdgeMeter meter(nullptr, {});
   for (const double shift_px : {0.0, 1.3, 2.6}) meter.add(bars(0, shift_px), std::nullopt);
-  EXPECT_EQ(meter.vertical(*meter.result()).why(),
-            "the clip shows 0 clean edges along its rows and 36 along its columns; it takes 12 of "
+  EXPECT_EQ(meter.result()->vertical_spread_px.why(),
+            "the clip shows 0 clean edges along its rows and 100 along its columns; it takes 12 of "
             "each");
 }
 

@@ -217,7 +217,7 @@ StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
     return fit_edges(all, mask.radius_px.value, amount, tone, unmasked);
   };
   const std::vector<EdgeFit> fits = under(mask.amount.value);
-  StepResponse response{camera_spread(fits), mask.amount, mask.radius_px, {}};
+  StepResponse response{camera_spread(fits), mask.amount, mask.radius_px};
   // The errors are coupled: a stronger mask implies a larger spread.
   const Estimate other = camera_spread(under(mask.amount.value + mask.amount.sigma));
   Estimate& spread = response.point_spread_px;

@@ -31,7 +31,7 @@ struct StepEdge {
 };
 
 struct StepResponse {
-  // Standard deviation of the point spread.
+  // Standard deviation of the point spread; along the rows where it differs along the columns.
   Estimate point_spread_px;
   // Amount of the unsharp mask; 0 if it does not differ significantly from 0.
   Estimate sharpening;
@@ -39,6 +39,8 @@ struct StepResponse {
   Estimate sharpening_px;
   // The spread of each edge: that of the camera and that of the edge in the world together.
   std::vector<double> edge_spreads_px;
+  // What the point spread along the columns has beyond that along the rows, a standard deviation.
+  Measured<Estimate> vertical_spread_px = NotMeasured{"edges of all directions are taken together"};
 };
 
 // Fits the step response to one edge or more. Each edge has its own two levels, since the tone
