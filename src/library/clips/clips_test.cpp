@@ -100,7 +100,7 @@ TEST_F(Clips, AreCalibrated) {
   options.gamma = 2;
   const Calibration found = calibrate({video()}, options);
   EXPECT_EQ(found.frames, kFrames);
-  EXPECT_EQ(found.quantities.size(), 14u);
+  EXPECT_EQ(found.quantities.size(), 15u);
   for (const CalibratedQuantity& quantity : found.quantities) {
     EXPECT_EQ(quantity.values.empty(), !quantity.missing.empty()) << quantity.name;
     if (quantity.name != "optics.point_spread_px") continue;
