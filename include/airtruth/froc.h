@@ -46,8 +46,8 @@ AIRTRUTH_API FrocSequence froc_sequence(std::span<const ScoredImage> images,
 // For each detection of an image whether it counts neither way, by the same matching.
 AIRTRUTH_API std::vector<bool> counts_neither_way(const ScoredImage& image, double centre_px);
 
-// True where a detection of this category claims to be an aircraft, as every word does that names no
-// other class of object ("bird", "drones").
+// True where a detection of this category claims to be an aircraft, as every word does that names
+// no other class of object ("bird", "drones").
 AIRTRUTH_API bool claims_aircraft(std::string_view category);
 
 struct FrocPoint {

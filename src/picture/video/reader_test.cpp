@@ -403,8 +403,9 @@ TEST_F(Video, SaysWhatIsWrongWithAFile) {
   EXPECT_THAT(error_of(folder_ / "empty.mp4"), testing::HasSubstr("is empty"));
   write_file(folder_ / "text.mp4", "this is no video, but it is long enough to be looked at");
   EXPECT_THAT(error_of(folder_ / "text.mp4"), testing::HasSubstr("cannot be read as a video"));
-  ffmpeg("-f lavfi -i testsrc2=size=64x48:duration=0.1 -c:v libx264 "
-         "-bsf:v h264_metadata=matrix_coefficients=8 ycgco.mp4");
+  ffmpeg(
+      "-f lavfi -i testsrc2=size=64x48:duration=0.1 -c:v libx264 "
+      "-bsf:v h264_metadata=matrix_coefficients=8 ycgco.mp4");
   EXPECT_THAT(error_of(folder_ / "ycgco.mp4"),
               testing::HasSubstr("has the colour matrix ycgco; expected bt709"));
   EXPECT_THAT(error_of(folder_), testing::HasSubstr("folder"));
