@@ -95,7 +95,8 @@ TEST(Edges, SofterAlongTheColumns) {
     EdgeMeter meter(nullptr, {});
     for (const double shift_px : {0.0, 1.3, 2.6, 3.9, 5.2, 6.5})
       for (const bool is_turned : {false, true}) {
-        cv::Mat grey = image::luma_of(bars(0, shift_px));
+        const image::Picture sharp = bars(0, shift_px);
+        cv::Mat grey = image::luma_of(sharp).clone();  // a Mat of luma is of the picture's samples
         if (is_turned) cv::transpose(grey, grey);
         if (beyond_px > 0) cv::GaussianBlur(grey, grey, {1, 15}, 1e-3, beyond_px);
         image::Picture picture = image::make_picture(grey.cols, grey.rows, {});
