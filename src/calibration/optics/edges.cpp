@@ -58,6 +58,12 @@ constexpr double kMeanExcessInWorld = 0.7;
 // are that narrow, of other real clips 0.04 to 0.13 but for one.
 constexpr double kLimitedWidthRatio = 1.2;
 
+// Adds to the error of a spread the chance that the sharpest edges are soft in the world, by the
+// number of different edges that the camera limits.
+void add_chance(Estimate& spread, double limited) {
+  spread.sigma = std::hypot(spread.sigma, spread.value * kMeanExcessInWorld / limited);
+}
+
 double moved_across(const EdgeLine& line, const Homography& frame_from_before) {
   const Pixel here(line.x + 0.5, line.y + 0.5);
   const Pixel before = apply(frame_from_before.inverse(), here);
@@ -310,13 +316,12 @@ Measured<StepResponse> EdgeMeter::result(double codec_step) {
   if (edges_.size() < kMinEdges)
     return NotMeasured{"the clip shows " + std::to_string(edges_.size()) +
                        " clean straight edges; it takes " + std::to_string(kMinEdges)};
-  const std::vector<const Edge*> sharpest_first = by_width(usable(codec_step));
+  const std::vector<const Edge*> all = usable(codec_step);
+  const std::vector<const Edge*> sharpest_first = by_width(all);
   const auto edges = sharp_ones(sharpest_first);
   StepResponse response = fit_step_response(edges, tone_);
-  Estimate& spread = response.point_spread_px;
-  const double limited = share_limited(sharpest_first) * most_at_once_;
-  spread.sigma = std::hypot(spread.sigma, spread.value * kMeanExcessInWorld / limited);
-  part_by_axis(response, codec_step);
+  add_chance(response.point_spread_px, share_limited(sharpest_first) * most_at_once_);
+  part_by_axis(response, all);
   profile_ = edge_profile(edges, response, tone_);
   return response;
 }
@@ -324,15 +329,15 @@ Measured<StepResponse> EdgeMeter::result(double codec_step) {
 Estimate EdgeMeter::spread_by(const std::vector<const Edge*>& sharpest_first,
                               const StepResponse& mask) const {
   Estimate spread = camera_spread_px(sharp_ones(sharpest_first), mask, tone_);
-  const double limited = share_limited(sharpest_first) * most_at_once_ *
-                         double(sharpest_first.size()) / double(edges_.size());
-  spread.sigma = std::hypot(spread.sigma, spread.value * kMeanExcessInWorld / limited);
+  add_chance(spread,
+             share_limited(sharpest_first) * most_at_once_ * double(sharpest_first.size()) /
+                 double(edges_.size()));
   return spread;
 }
 
-void EdgeMeter::part_by_axis(StepResponse& response, double codec_step) const {
+void EdgeMeter::part_by_axis(StepResponse& response, const std::vector<const Edge*>& edges) const {
   std::vector<const Edge*> along_rows, along_columns;
-  for (const Edge* edge : usable(codec_step)) {
+  for (const Edge* edge : edges) {
     if (std::abs(edge->line.ny) > kMinCosineToAxis) along_rows.push_back(edge);
     if (std::abs(edge->line.nx) > kMinCosineToAxis) along_columns.push_back(edge);
   }

@@ -70,7 +70,7 @@ class EdgeMeter {
   // The edges, the sharpest first.
   static std::vector<const Edge*> by_width(std::vector<const Edge*> edges);
   // Parts the spread along the columns from that along the rows.
-  void part_by_axis(StepResponse& response, double codec_step) const;
+  void part_by_axis(StepResponse& response, const std::vector<const Edge*>& edges) const;
   // The spread of the camera by these edges under a mask that is known, with its error.
   Estimate spread_by(const std::vector<const Edge*>& by_width, const StepResponse& mask) const;
   static std::vector<const StepEdge*> sharp_ones(std::vector<const Edge*> by_width);

@@ -195,7 +195,7 @@ struct Weather {
   std::optional<double> exposure;
   // On the ratio of red to blue in that light.
   std::optional<double> white_balance;
-  // On optics.point_spread_px.
+  // On optics.point_spread_px and optics.vertical_spread_px.
   std::optional<double> blur;
   // On the standard deviation of the sensor's noise.
   std::optional<double> noise;

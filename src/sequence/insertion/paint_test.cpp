@@ -394,11 +394,14 @@ TEST(Weather, ChangesTheCameraOfWhatIsInserted) {
     }
     return samples;
   };
-  const auto with = luma(
-      "[optics]\npoint_spread_px = 0.8\n[sensor]\nnoise_floor = 1e-5\n[weather]\nblur = 2\nnoise "
-      "= 3\n");
-  EXPECT_EQ(with, luma("[optics]\npoint_spread_px = 1.6\n[sensor]\nnoise_floor = 9e-5\n"));
-  EXPECT_NE(with, luma("[optics]\npoint_spread_px = 0.8\n[sensor]\nnoise_floor = 1e-5\n"));
+  const auto of = [&](const char* spread, const char* vertical, const std::string& sensor) {
+    return luma(std::string("[optics]\npoint_spread_px = ") + spread +
+                "\nvertical_spread_px = " + vertical + "\n[sensor]\nnoise_floor = " + sensor);
+  };
+  const auto with = of("0.8", "0.5", "1e-5\n[weather]\nblur = 2\nnoise = 3\n");
+  EXPECT_EQ(with, of("1.6", "1.0", "9e-5\n"));
+  EXPECT_NE(with, of("1.6", "0.5", "9e-5\n"));
+  EXPECT_NE(with, of("0.8", "0.5", "1e-5\n"));
 }
 
 }  // namespace

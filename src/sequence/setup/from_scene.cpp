@@ -340,6 +340,7 @@ scene::CameraModel camera_in_weather(const scene::Scene& scene) {
     if (value) *value *= factor;
   };
   scale(model.point_spread_px, scene.weather.blur.value_or(1));
+  scale(model.vertical_spread_px, scene.weather.blur.value_or(1));
   const double noise = scene.weather.noise.value_or(1);
   scale(model.noise_gain, noise * noise);
   scale(model.noise_floor, noise * noise);
