@@ -162,9 +162,8 @@ std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
   }
   if (name.empty() || name == "." || name == "..") name = "clip";
   if (name.front() == '.') name.front() = '-';  // the folder would be hidden
-  // A plain file name has at most 200 bytes.
   const auto with = [&](const std::string& ending) {
-    std::size_t end = std::min(name.size(), 200 - ending.size());
+    std::size_t end = std::min(name.size(), kMostFileNameBytes - ending.size());
     while (is_utf8 && end < name.size() && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80)
       --end;
     return name.substr(0, end) + ending;

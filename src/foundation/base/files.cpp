@@ -237,7 +237,7 @@ std::string sha256_of(std::string_view bytes) {
 }
 
 bool is_plain_file_name(std::string_view name) {
-  return !name.empty() && name.size() <= 200 && name.front() != '.' &&
+  return !name.empty() && name.size() <= kMostFileNameBytes && name.front() != '.' &&
          name.find('/') == std::string_view::npos && std::ranges::none_of(name, is_control);
 }
 

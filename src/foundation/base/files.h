@@ -71,9 +71,12 @@ std::string sha256_of_file(const fs::path& path);
 std::string sha256_of(std::string_view bytes);
 
 // True where a file in any folder could have this name and be seen there: it is not empty, does not
-// begin with a dot (entries() leaves out such files), has at most 200 bytes, and holds no slash and
-// no control character.
+// begin with a dot (entries() leaves out such files), has at most kMostFileNameBytes, and holds no
+// slash and no control character.
 bool is_plain_file_name(std::string_view name);
+// Below the 255 bytes of Linux's file systems (NAME_MAX), so that endings such as ".truth.jsonl"
+// fit.
+inline constexpr std::size_t kMostFileNameBytes = 200;
 inline constexpr const char* kPlainFileName =
     "a plain file name: no slash, no dot in front, at most 200 bytes";
 

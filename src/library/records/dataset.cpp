@@ -34,7 +34,7 @@ std::string name_in_record(const fs::path& folder) {
   const auto name = record["name"].get<std::string>();
   // A manipulated record must not name files outside its folder.
   if (!is_plain_file_name(name))
-    throw Error("name is '" + name.substr(0, 80) + "'; expected a plain file name",
+    throw Error("name is '" + name.substr(0, 80) + "'; expected " + kPlainFileName,
                 {file.string()});
   return name;
 }

@@ -117,7 +117,7 @@ Finished open_finished(const fs::path& folder) {
   finished.name = record.text("name");
   // A manipulated record must not name files outside its folder.
   if (!is_plain_file_name(finished.name))
-    throw Error("name is '" + finished.name.substr(0, 80) + "'; expected a plain file name",
+    throw Error("name is '" + finished.name.substr(0, 80) + "'; expected " + kPlainFileName,
                 {record_file.string()});
   finished.encounters = pipeline::read_encounter_records(record);
   finished.scene = scene::parse_scene(record.text("scene_toml"), record_file);
