@@ -206,10 +206,11 @@ class Session::Impl {
       case Act::kFrame:
         return show(client, std::move(request));
       case Act::kPlan:
-        return on_worker(worker_, client, request.id, [this] { return plan(); });
+        return on_worker(
+            worker_, client, request.id, [this] { return plan_of(stage_, ready()->tables); });
       case Act::kNearMiss:
         return on_worker(worker_, client, request.id, [this, wanted = request.near_miss] {
-          return near_miss(wanted);
+          return Json{{"encounter", encounter_through(stage_, ready()->tables, wanted)}};
         });
       case Act::kAircraft:
         return on_worker(beside_, client, request.id, [this, word = request.search] {
@@ -304,20 +305,18 @@ class Session::Impl {
     if (!shot.scene) return shot.problem;
     const std::string problem =
         fault_of([&] { stage_.set(shot.revision, *shot.scene, measured_); });
-    if (problem.empty()) measure(*shot.scene);
+    if (problem.empty()) {
+      measure_motion(*shot.scene);
+      measure_camera(*shot.scene);
+    }
     return problem;
   }
 
-  Json plan() {
-    const auto shot = snapshot();
+  // The present scene, which is set up. Throws Error where it cannot be.
+  std::shared_ptr<const Snapshot> ready() {
+    auto shot = snapshot();
     if (const std::string problem = set_up(*shot); !problem.empty()) throw Error(problem);
-    return plan_of(stage_, shot->tables);
-  }
-
-  Json near_miss(const messages::NearMiss& wanted) {
-    const auto shot = snapshot();
-    if (const std::string problem = set_up(*shot); !problem.empty()) throw Error(problem);
-    return {{"encounter", encounter_through(stage_, shot->tables, wanted)}};
+    return shot;
   }
 
   void show(Client client, Request request) {
@@ -362,12 +361,8 @@ class Session::Impl {
         problem.empty() ? lines_over(stage_, request.frame, shot->tables) : Json::array();
     header["directions"] = problem.empty() ? directions_over(stage_, request.frame) : Json::array();
     header["problem"] = problem.empty() ? Json() : Json(problem);
-    send_picture(client, framed(header, jpeg));
+    ways_.post([this, client, bytes = framed(header, jpeg)] { ways_.send_binary(client, bytes); });
     if (made && !made->exact && stage_.is_complete()) again_later(client, request);
-  }
-
-  void send_picture(Client client, std::string bytes) {
-    ways_.post([this, client, bytes = std::move(bytes)] { ways_.send_binary(client, bytes); });
   }
 
   // The exact picture follows when there is nothing else to do, and the hand rests.
@@ -401,11 +396,7 @@ class Session::Impl {
     return even(box, whole.width, whole.height);
   }
 
-  // Begins to measure what the scene needs and nothing measures yet.
-  void measure(const scene::Scene& scene) {
-    measure_motion(scene);
-    measure_camera(scene);
-  }
+  // Begin to measure what the scene needs and nothing measures yet.
 
   void measure_motion(const scene::Scene& scene) {
     const std::string key = motion_key(scene);
@@ -425,7 +416,7 @@ class Session::Impl {
           measured_.motion = motion;
           measured_.motion_key = key;
         }
-        finish("motion");
+        tell_soon({{"event", "measured"}, {"of", "motion"}});
       });
     });
   }
@@ -445,18 +436,13 @@ class Session::Impl {
       if (stop.stop_requested()) return;
       worker_.add(Urgency::kFrame, [this, key, problem] {
         if (problem.empty()) measured_.calibrated.insert(key);
-        finish("calibrate");
+        tell_soon({{"event", "measured"}, {"of", "calibrate"}});
       });
     });
   }
 
-  void finish(const std::string& what) {
-    ways_.post([this, what] { tell({{"event", "measured"}, {"of", what}}); });
-  }
-  void tell_progress(const std::string& what, std::int64_t done, std::int64_t total) {
-    ways_.post([this, what, done, total] {
-      tell({{"event", "progress"}, {"of", what}, {"done", done}, {"total", total}});
-    });
+  void tell_soon(Json event) {
+    ways_.post([this, event = std::move(event)] { tell(event); });
   }
 
   // What a page asks for that takes long; one at a time.
@@ -465,10 +451,13 @@ class Session::Impl {
     pipeline::Options options = options_.pipeline;
     options.stop = stop;
     options.warn = [this](const std::string& line) {
-      ways_.post([this, line] { tell({{"event", "warning"}, {"line", line}}); });
+      tell_soon({{"event", "warning"}, {"line", line}});
     };
     options.progress = [this, what](const pipeline::Progress& progress) {
-      tell_progress(what, progress.frames_done, progress.frames_total);
+      tell_soon({{"event", "progress"},
+                 {"of", what},
+                 {"done", progress.frames_done},
+                 {"total", progress.frames_total}});
     };
     return options;
   }
