@@ -26,7 +26,7 @@
 #include "sequence/setup/from_scene.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
-#include "show/plot/plot_json.h"
+#include "show/plot/plot.h"
 
 namespace airtruth::set_report {
 namespace {

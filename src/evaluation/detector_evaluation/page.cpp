@@ -22,7 +22,7 @@
 #include "show/drawing/thumbnails.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
-#include "show/plot/plot_json.h"
+#include "show/plot/plot.h"
 
 namespace airtruth::detector_evaluation {
 namespace {

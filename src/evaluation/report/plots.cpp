@@ -8,7 +8,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "show/plot/plot_json.h"
 
 namespace airtruth::report {
 namespace {

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "foundation/image/picture.h"
 
 // Plots as values: what a plot shows, apart from the library that draws it. A plot is described
-// once. gnuplot draws it as a file (gnuplot.h), and Chart.js draws it on a page (plot_json.h and
+// once. gnuplot draws it as a file (gnuplot.h), and Chart.js draws it on a page (drawPlot in
 // show/html/assets/common.js).
 //
 // Example: the success curve of one tracker,
@@ -119,5 +121,15 @@ struct Plot {
 // The name of a bin from one bound to another; an infinite one is open: "100–200", "< 50", "≥ 200",
 // "-20 to -10".
 std::string name_of_bin(double from, double to);
+
+// A plot as a page's script reads it: title, x and y with label, min, max, names and logarithmic,
+// and series with name, mark, style, x, y, low and high. Values that are not finite are null. Pages
+// draw lines, points and bars with their bounds; horizontal intervals, triangles, bands of x and
+// pictures are for files alone.
+nlohmann::ordered_json json_of(const Plot& plot);
+
+// A style as {"colour": "#0072b2", "dash": [7, 3], "width": 1}: dashes are in px for a line of
+// usual width, and the colour of truth is "ink".
+nlohmann::ordered_json json_of(const Style& style);
 
 }  // namespace airtruth::plot

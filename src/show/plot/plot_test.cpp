@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "show/plot/plot.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
 #include "show/plot/gnuplot.h"
-#include "show/plot/plot_json.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::plot {
