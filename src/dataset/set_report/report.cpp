@@ -25,7 +25,6 @@
 #include "foundation/json/or_null.h"
 #include "sequence/setup/from_scene.h"
 #include "show/html/page.h"
-#include "show/html/page_assets.h"
 #include "show/plot/plot.h"
 
 namespace airtruth::set_report {

@@ -21,7 +21,6 @@
 #include "picture/video/numbered_frames.h"
 #include "show/drawing/thumbnails.h"
 #include "show/html/page.h"
-#include "show/html/page_assets.h"
 #include "show/plot/plot.h"
 
 namespace airtruth::detector_evaluation {

@@ -21,7 +21,6 @@
 #include "picture/video/still.h"
 #include "show/drawing/pictures.h"
 #include "show/html/page.h"
-#include "show/html/page_assets.h"
 #include "show/plot/plot.h"
 
 namespace airtruth::tracker_evaluation {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "foundation/base/text.h"
-#include "show/html/page_assets.h"
 
 namespace airtruth::html {
 namespace {
