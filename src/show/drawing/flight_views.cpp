@@ -76,35 +76,22 @@ void grid(cv::Mat& canvas, const Axes& axes, const std::string& x_name, const st
     for (double v = std::ceil(range.low / tick) * tick; v <= range.high + 1e-9 * tick; v += tick)
       draw(v);
   };
+  const auto number = [](double v) { return fmt::format("{:g}", v == 0 ? 0.0 : v); };
+  const auto write = [&](const std::string& words, int x, int y) {
+    text(canvas, words, x, y, kTextPx, kGrey);
+  };
   ticks(axes.x, [&](double v) {
-    line(canvas, axes.at(v, axes.y.low), axes.at(v, axes.y.high), faint);
-    const std::string words = fmt::format("{:g}", v == 0 ? 0.0 : v);
     const cv::Point2d foot = axes.at(v, axes.y.low);
-    text(canvas,
-         words,
-         int(foot.x) - text_width(words, kTextPx) / 2,
-         int(foot.y) + 16,
-         kTextPx,
-         kGrey);
+    line(canvas, foot, axes.at(v, axes.y.high), faint);
+    write(number(v), int(foot.x) - text_width(number(v), kTextPx) / 2, int(foot.y) + 16);
   });
   ticks(axes.y, [&](double v) {
-    line(canvas, axes.at(axes.x.low, v), axes.at(axes.x.high, v), faint);
     const cv::Point2d foot = axes.at(axes.x.low, v);
-    const std::string words = fmt::format("{:g}", v == 0 ? 0.0 : v);
-    text(canvas,
-         words,
-         int(foot.x) - text_width(words, kTextPx) - 5,
-         int(foot.y) + 4,
-         kTextPx,
-         kGrey);
+    line(canvas, foot, axes.at(axes.x.high, v), faint);
+    write(number(v), int(foot.x) - text_width(number(v), kTextPx) - 5, int(foot.y) + 4);
   });
-  text(canvas,
-       x_name,
-       axes.area.br().x - text_width(x_name, kTextPx),
-       canvas.rows - 6,
-       kTextPx,
-       kGrey);
-  text(canvas, y_name, 6, 16, kTextPx, kGrey);
+  write(x_name, axes.area.br().x - text_width(x_name, kTextPx), canvas.rows - 6);
+  write(y_name, 6, 16);
 }
 
 bool is_whole(double time_s) { return std::abs(time_s - std::round(time_s)) < 1e-6; }
@@ -138,8 +125,6 @@ void join_seconds(cv::Mat& canvas, const std::vector<FlightLine>& lines, const P
     }
 }
 
-cv::Mat paper(int width, int height) { return {height, width, CV_8UC3, kDarkPaper}; }
-
 }  // namespace
 
 image::Rgb8 plan_view(const std::vector<FlightLine>& lines,
@@ -147,7 +132,7 @@ image::Rgb8 plan_view(const std::vector<FlightLine>& lines,
                       double cone_deg,
                       int width,
                       int height) {
-  cv::Mat canvas = paper(width, height);
+  cv::Mat canvas(height, width, CV_8UC3, kDarkPaper);
   const auto north = [](const FlightLine& l, std::size_t i) { return l.positions_ned_m[i].x(); };
   const auto east = [](const FlightLine& l, std::size_t i) { return l.positions_ned_m[i].y(); };
   // Least span of an axis, which gives a path that stands still a scale.
@@ -167,12 +152,9 @@ image::Rgb8 plan_view(const std::vector<FlightLine>& lines,
     const double reach_m = 0.3 * std::min(x.span(), y.span());
     for (const double side : {-0.5, 0.5}) {
       const double a = radians(heading_deg + side * cone_deg);
-      const cv::Point2d from = place(lines[0], 0);
-      line(canvas,
-           from,
-           axes.at(east(lines[0], 0) + reach_m * std::sin(a),
-                   north(lines[0], 0) + reach_m * std::cos(a)),
-           kGrey);
+      const cv::Point2d to = axes.at(east(lines[0], 0) + reach_m * std::sin(a),
+                                     north(lines[0], 0) + reach_m * std::cos(a));
+      line(canvas, place(lines[0], 0), to, kGrey);
     }
   }
   join_seconds(canvas, lines, place);
@@ -181,7 +163,7 @@ image::Rgb8 plan_view(const std::vector<FlightLine>& lines,
 }
 
 image::Rgb8 height_view(const std::vector<FlightLine>& lines, int width, int height) {
-  cv::Mat canvas = paper(width, height);
+  cv::Mat canvas(height, width, CV_8UC3, kDarkPaper);
   const auto time = [](const FlightLine& l, std::size_t i) { return l.times_s[i]; };
   const auto above = [](const FlightLine& l, std::size_t i) { return -l.positions_ned_m[i].z(); };
   // Least spans of the axes, which give a path that stands still a scale.
@@ -210,7 +192,7 @@ image::Rgb8 table_picture(const std::vector<std::string>& heading,
     for (const TableRow& row : rows) widest = std::max(widest, text_width(row.cells[c], kTextPx));
     widths.push_back(widest);
   }
-  cv::Mat canvas = paper(width, kRowPx * (static_cast<int>(rows.size()) + 1) + 14);
+  cv::Mat canvas(kRowPx * (static_cast<int>(rows.size()) + 1) + 14, width, CV_8UC3, kDarkPaper);
   const auto draw_row =
       [&](const std::vector<std::string>& cells, int y, const cv::Scalar& colour) {
         int x = kLeftPx;
