@@ -19,11 +19,11 @@ namespace {
 
 // Text in gnuplot's single quotes. A line end would end the command, and a quote the text: gnuplot
 // 5.4 does not read a doubled quote at its beginning. A typographic apostrophe stands for it.
-std::string quoted(const std::string& text) {
+std::string quoted(const std::string& text, const char* apostrophe = "\u2019") {
   std::string result = "'";
   for (const char c : text)
     if (c == '\'')
-      result += "\u2019";
+      result += apostrophe;
     else
       result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   return result + "'";
@@ -31,14 +31,7 @@ std::string quoted(const std::string& text) {
 
 // A path, or a file name that this project chooses, in gnuplot's single quotes. It does not begin
 // with a quote, so that quotes can be doubled. gnuplot does not find a path with a line end.
-std::string quoted_path(const std::string& path) {
-  std::string result = "'";
-  for (const char c : path) {
-    if (c == '\'') result += '\'';
-    result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  }
-  return result + "'";
-}
+std::string quoted_path(const std::string& path) { return quoted(path, "''"); }
 
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN";
@@ -153,11 +146,6 @@ std::string drawn_as(const Series& series) {
   return {};
 }
 
-// White below a ring, so that its whisker does not cross it.
-std::string white_below_ring() {
-  return fmt::format("using 1:2 with points pt 7 ps {} lc rgb '#ffffff'", kDotSize);
-}
-
 // Bars and dots of several series stand side by side, each of this width.
 double bar_width(const Plot& plot) {
   const auto bars = std::ranges::count_if(plot.series, is_beside_others);
@@ -194,7 +182,9 @@ class Script {
             "notitle");
       // Whiskers lie on bars and below dots.
       if (has_whiskers(series) && series.mark == Mark::kDots) add(whiskers_of(series), "notitle");
-      if (series.is_hollow) add(white_below_ring(), "notitle");
+      // White below a ring, so that its whisker does not cross it.
+      if (series.is_hollow)
+        add(fmt::format("using 1:2 with points pt 7 ps {} lc rgb '#ffffff'", kDotSize), "notitle");
       add(drawn_as(series), series.name.empty() ? "notitle" : "title " + quoted(series.name));
       if (has_whiskers(series) && series.mark == Mark::kBars) add(whiskers_of(series), "notitle");
     }
