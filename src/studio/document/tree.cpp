@@ -46,7 +46,7 @@ class Reader {
   Node table(const toml::table& table, Node::Kind kind) const {
     Node node = placed(table, kind);
     for (const auto& [key, value] : table) {
-      node.members.push_back(member(key, value));
+      node.members.push_back(read(value, &key));
       node.members.back().key = key.str();
       node.members.back().key_begin = lines_.offset(key.source().begin);
     }
@@ -73,29 +73,19 @@ class Reader {
     return next != std::string_view::npos && text_[next] == ']';
   }
 
-  Node member(const toml::key& key, const toml::node& value) const {
+  // `key`: of a member of a table; nullptr of an element of an array.
+  Node read(const toml::node& value, const toml::key* key) const {
     if (const auto* inside = value.as_table()) {
       if (inside->is_inline()) return table(*inside, Node::Kind::kInlineTable);
-      return table(*inside,
-                   is_header(key, *inside) ? Node::Kind::kHeaderTable : Node::Kind::kImpliedTable);
-    }
-    return element(value);
-  }
-
-  Node element(const toml::node& value) const {
-    if (const auto* inside = value.as_table()) {
-      return table(*inside,
-                   inside->is_inline() ? Node::Kind::kInlineTable : Node::Kind::kHeaderTable);
+      const bool is_implied = key != nullptr && !is_header(*key, *inside);
+      return table(*inside, is_implied ? Node::Kind::kImpliedTable : Node::Kind::kHeaderTable);
     }
     const auto* array = value.as_array();
     if (array == nullptr) return placed(value, Node::Kind::kValue);
-    const auto is_of_headers = [](const toml::array& all) {
-      const auto* first = all.empty() ? nullptr : all.front().as_table();
-      return first != nullptr && !first->is_inline();
-    };
-    Node node =
-        placed(value, is_of_headers(*array) ? Node::Kind::kTableArray : Node::Kind::kInlineArray);
-    for (const toml::node& part : *array) node.elements.push_back(element(part));
+    const auto* first = array->empty() ? nullptr : array->front().as_table();
+    const bool is_of_headers = first != nullptr && !first->is_inline();
+    Node node = placed(value, is_of_headers ? Node::Kind::kTableArray : Node::Kind::kInlineArray);
+    for (const toml::node& part : *array) node.elements.push_back(read(part, nullptr));
     return node;
   }
 
