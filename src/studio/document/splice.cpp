@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 #include "studio/document/tree.h"
 
 namespace airtruth::document {
@@ -47,7 +48,7 @@ class Splicer {
     return with_cuts();
   }
 
-  // What the file has to say after the change.
+  // What the file has to say after the change, once it was made().
   nlohmann::json expected() const;
 
  private:
@@ -91,13 +92,8 @@ class Splicer {
     return end == std::string_view::npos ? text_.size() : end + 1;
   }
   std::string_view line_at(std::size_t at) const { return text_.substr(at, line_end(at) - at); }
-  static bool is_blank(std::string_view line) {
-    return line.find_first_not_of(" \t\r\n") == std::string_view::npos;
-  }
-  static bool is_comment(std::string_view line) {
-    const std::size_t first = line.find_first_not_of(" \t");
-    return first != std::string_view::npos && line[first] == '#';
-  }
+  static bool is_blank(std::string_view line) { return trimmed(line).empty(); }
+  static bool is_comment(std::string_view line) { return trimmed(line).starts_with('#'); }
   std::string indent_at(std::size_t at) const {
     const std::string_view line = line_at(line_begin(at));
     return std::string(line.substr(0, std::min(line.find_first_not_of(" \t"), line.size())));
@@ -297,9 +293,7 @@ class Splicer {
     const Node& parent = existing(parent_path);
     if (parent.kind == Kind::kInlineArray || is_inside_inline(parent_path))
       return remove_part(parent, node);
-    const std::size_t begin = line_begin(node.key_begin);
-    const std::size_t end = line_end(node.end);
-    cut(begin, end);
+    cut(line_begin(node.key_begin), line_end(node.end));
   }
   bool is_inside_inline(Path path) const {
     for (; !path.empty(); path.pop_back()) {
@@ -419,26 +413,25 @@ nlohmann::json* descend(nlohmann::json& from, const Step& step) {
 nlohmann::json Splicer::expected() const {
   nlohmann::json values = tree_.values;
   nlohmann::json* parent = &values;
-  for (std::size_t i = 0; i + 1 < change_.path.size(); ++i) {
-    nlohmann::json* next = descend(*parent, change_.path[i]);
-    if (next == nullptr && change_.kind == Change::Kind::kSet && parent->is_object())
-      next = &((*parent)[std::get<std::string>(change_.path[i])] = nlohmann::json::object());
-    if (next == nullptr) refuse("is not there");
-    parent = next;
+  nlohmann::json* node = &values;
+  for (const Step& step : change_.path) {
+    parent = node;
+    const auto* key = std::get_if<std::string>(&step);
+    // A key that is not there is made.
+    node = key != nullptr ? &(*node)[*key] : &node->at(std::get<std::size_t>(step));
   }
-  const Step& last = change_.path.back();
-  const auto* key = std::get_if<std::string>(&last);
-  const auto place = static_cast<std::ptrdiff_t>(key ? 0 : std::get<std::size_t>(last));
   if (change_.kind == Change::Kind::kRemove) {
-    key ? void(parent->erase(*key)) : void(parent->erase(parent->begin() + place));
+    const Step& last = change_.path.back();
+    if (const auto* key = std::get_if<std::string>(&last))
+      parent->erase(*key);
+    else
+      parent->erase(std::get<std::size_t>(last));
   } else if (change_.kind == Change::Kind::kSet) {
-    (key ? (*parent)[*key] : parent->at(static_cast<std::size_t>(place))) =
-        read_back(change_.value);
+    *node = read_back(change_.value);
   } else {
-    nlohmann::json& array = key ? (*parent)[*key] : parent->at(static_cast<std::size_t>(place));
-    if (array.is_null()) array = nlohmann::json::array();
-    const auto at = static_cast<std::ptrdiff_t>(change_.at.value_or(array.size()));
-    array.insert(array.begin() + at, read_back(change_.value));
+    if (node->is_null()) *node = nlohmann::json::array();
+    const auto at = static_cast<std::ptrdiff_t>(change_.at.value_or(node->size()));
+    node->insert(node->begin() + at, read_back(change_.value));
   }
   return values;
 }
