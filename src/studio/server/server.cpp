@@ -129,6 +129,7 @@ class Server::Impl {
 
   // One that is open.
   class Page;
+  class Connection;
   std::size_t connections = 0;
   std::map<session::Client, std::shared_ptr<Page>> pages;
 
@@ -258,13 +259,10 @@ class Server::Impl::Page : public std::enable_shared_from_this<Page> {
   bool is_over_ = false;
 };
 
-namespace {
-
 // One connection: requests one after the other, until it becomes a WebSocket.
-template <typename Server>
-class Connection : public std::enable_shared_from_this<Connection<Server>> {
+class Server::Impl::Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(Server& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {
+  Connection(Impl& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {
     ++server_.connections;
   }
   ~Connection() { --server_.connections; }
@@ -275,7 +273,7 @@ class Connection : public std::enable_shared_from_this<Connection<Server>> {
     parser_->body_limit(kMostBodyBytes);
     stream_.expires_after(kRequestTime);
     http::async_read(
-        stream_, buffer_, *parser_, [self = this->shared_from_this()](Fault fault, std::size_t) {
+        stream_, buffer_, *parser_, [self = shared_from_this()](Fault fault, std::size_t) {
           if (!fault) self->answer();
         });
   }
@@ -305,8 +303,7 @@ class Connection : public std::enable_shared_from_this<Connection<Server>> {
       return refuse(http::status::service_unavailable, "too many pages of this studio are open");
     stream_.expires_never();
     const session::Client client = server_.next_client();
-    const auto page =
-        std::make_shared<typename Server::Page>(server_, client, stream_.release_socket());
+    const auto page = std::make_shared<Page>(server_, client, stream_.release_socket());
     server_.pages[client] = page;
     page->begin(request_);
   }
@@ -344,7 +341,7 @@ class Connection : public std::enable_shared_from_this<Connection<Server>> {
 
   session::Session::Done jpeg() {
     stream_.expires_never();
-    return [self = this->shared_from_this()](std::optional<std::string> bytes) {
+    return [self = shared_from_this()](std::optional<std::string> bytes) {
       if (!bytes) return self->refuse(http::status::not_found, "there is no such picture");
       Response made = response(self->request_, http::status::ok, "image/jpeg", std::move(*bytes));
       made.set(http::field::cache_control, "private, max-age=3600");
@@ -371,7 +368,7 @@ class Connection : public std::enable_shared_from_this<Connection<Server>> {
     whole->prepare_payload();
     stream_.expires_never();
     http::async_write(
-        stream_, *whole, [self = this->shared_from_this(), whole](Fault failed, std::size_t) {
+        stream_, *whole, [self = shared_from_this(), whole](Fault failed, std::size_t) {
           self->written(failed, whole->need_eof());
         });
   }
@@ -402,10 +399,9 @@ class Connection : public std::enable_shared_from_this<Connection<Server>> {
   void write(Response made) {
     const auto kept = std::make_shared<Response>(std::move(made));
     stream_.expires_after(kRequestTime);
-    http::async_write(
-        stream_, *kept, [self = this->shared_from_this(), kept](Fault fault, std::size_t) {
-          self->written(fault, kept->need_eof());
-        });
+    http::async_write(stream_, *kept, [self = shared_from_this(), kept](Fault fault, std::size_t) {
+      self->written(fault, kept->need_eof());
+    });
   }
   void written(Fault fault, bool is_last) {
     if (fault) return;
@@ -414,14 +410,12 @@ class Connection : public std::enable_shared_from_this<Connection<Server>> {
     stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
   }
 
-  Server& server_;
+  Impl& server_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{kMostHeaderBytes + kMostBodyBytes};
   std::optional<http::request_parser<http::string_body>> parser_;
   Request request_;
 };
-
-}  // namespace
 
 void Server::Impl::accept() {
   acceptor_.async_accept([this](Fault fault, tcp::socket socket) {
@@ -429,7 +423,7 @@ void Server::Impl::accept() {
     Fault ignored;
     if (!fault && connections < kMostConnections) {
       socket.set_option(tcp::no_delay(true), ignored);
-      std::make_shared<Connection<Impl>>(*this, std::move(socket))->read();
+      std::make_shared<Connection>(*this, std::move(socket))->read();
     }
     accept();
   });
