@@ -131,3 +131,4 @@ export class CameraPanel extends Part {
     return field.element;
   }
 }
+customElements.define('studio-camera', CameraPanel);

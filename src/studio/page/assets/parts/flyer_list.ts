@@ -84,6 +84,7 @@ export class FlyerList extends Part {
     if (isSelected && this.panel.parentElement !== element) inView.before(this.panel);
   }
 }
+customElements.define('studio-flyers', FlyerList);
 
 // The flyer whose heading has the focus.
 export function headedBy(target: EventTarget|null): Path|null {

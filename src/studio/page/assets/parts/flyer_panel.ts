@@ -209,6 +209,7 @@ export class FlyerPanel extends Part {
       this.studio.store.say('info', 'This path cannot be stated so: it is not in the clip.');
   }
 }
+customElements.define('studio-flyer', FlyerPanel);
 
 // Where what is ahead is stated, what is right of it follows.
 const defaultOf = (options: KeyOptions, flyer: Flyer) =>

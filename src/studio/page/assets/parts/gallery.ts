@@ -128,6 +128,7 @@ export class Gallery extends DialogPart {
       this.studio.add(choice, addsAt);
   }
 }
+customElements.define('studio-gallery', Gallery);
 
 const sizeOf = ({length_m, span_m}: AircraftGroup) =>
     length_m ? `${round(length_m, 1)} m long${span_m ? `, span ${round(span_m, 1)} m` : ''}` : 'size not published';

@@ -171,3 +171,4 @@ export class HeightView extends SideView {
         'approach-keys');
   }
 }
+customElements.define('studio-height', HeightView);

@@ -41,3 +41,4 @@ export class HelpDialog extends DialogPart {
     return [h('div', {class: 'help'}, table(GESTURES), table(KEYS))];
   }
 }
+customElements.define('studio-help', HelpDialog);

@@ -246,3 +246,4 @@ export class LightPanel extends Part {
                          .map(({key, value}) => ({set: key.split('.'), to: short(value)})));
   }
 }
+customElements.define('studio-light', LightPanel);

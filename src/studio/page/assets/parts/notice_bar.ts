@@ -59,3 +59,4 @@ export class NoticeBar extends Part {
           '×'));
   }
 }
+customElements.define('studio-notices', NoticeBar);

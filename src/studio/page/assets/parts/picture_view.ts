@@ -218,3 +218,4 @@ export class PictureView extends Part {
       this.studio.store.put({dialog: 'gallery', addsAt: pixel});
   }
 }
+customElements.define('studio-picture', PictureView);

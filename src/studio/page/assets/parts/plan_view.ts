@@ -287,6 +287,7 @@ export class PlanView extends SideView {
         'approach-keys');
   }
 }
+customElements.define('studio-plan', PlanView);
 
 interface CpaPlace {
   own: Ned;

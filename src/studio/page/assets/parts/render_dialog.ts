@@ -219,6 +219,7 @@ export class RenderDialog extends DialogPart {
     }
   }
 }
+customElements.define('studio-render', RenderDialog);
 
 // By the middle of the frame, so that no rounding shows the one before.
 function seek(film: HTMLVideoElement, begin_s: number, frame: number, clip: Clip): void {

@@ -38,3 +38,4 @@ export class SideBar extends Part {
     });
   }
 }
+customElements.define('studio-side', SideBar);

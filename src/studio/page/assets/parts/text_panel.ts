@@ -27,6 +27,7 @@ export class TextPanel extends Part {
     this.code.replaceChildren(...state.text.split('\n').flatMap((line) => [...coloured(line), '\n']));
   }
 }
+customElements.define('studio-text', TextPanel);
 
 // A table's name, a key and a comment each as a span.
 function coloured(line: string): (Node|string)[] {

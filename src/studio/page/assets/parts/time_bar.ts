@@ -128,3 +128,4 @@ export class TimeBar extends Part {
             s('line', {class: `colour-${colour}`, x1: frame, x2: frame, y1: isOfChosen ? 0 : 0.6, y2: 1})));
   }
 }
+customElements.define('studio-time', TimeBar);

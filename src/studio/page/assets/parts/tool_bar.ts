@@ -87,3 +87,4 @@ export class ToolBar extends Part {
                                                'Render …');
   }
 }
+customElements.define('studio-tools', ToolBar);
