@@ -14,7 +14,6 @@
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 #include "show/drawing/pictures.h"
-#include "show/drawing/placing.h"
 #include "show/drawing/thumbnails.h"
 
 namespace airtruth::drawing {

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,10 +13,58 @@
 #include "foundation/image/colour.h"
 #include "show/drawing/draw.h"
 #include "show/drawing/pictures.h"
-#include "show/drawing/placing.h"
 
 namespace airtruth::drawing {
 namespace {
+
+// The sizes of this file are display choices.
+
+// Distance between a box's outline and its label, in pixels.
+constexpr int kGapPx = 3;
+// Number of rings of candidate places; a label of 10 px reaches 2,000 px with them.
+constexpr int kRings = 200;
+
+bool is_allowed(const PixelBox& place, const Placing& placing) {
+  const PixelBox& frame = placing.frame;
+  if (place.x < frame.x || place.y < frame.y || place.right() > frame.right() ||
+      place.bottom() > frame.bottom())
+    return false;
+  return std::ranges::none_of(
+      placing.taken, [&](const PixelBox& other) { return intersection(place, other).has_value(); });
+}
+
+std::int64_t covered_px(const PixelBox& place, const std::vector<PixelBox>& boxes) {
+  std::int64_t sum = 0;
+  for (const PixelBox& box : boxes) sum += common_px(place, box);
+  return sum;
+}
+
+// Places around `anchor` enlarged by `reach`. Above and below come first, since most aircraft are
+// wider than tall.
+std::array<PixelBox, 8> around(const PixelBox& anchor, int reach, int width, int height) {
+  const int left = anchor.x - reach;
+  const int right = anchor.right() + reach;
+  const int above = anchor.y - reach - height;
+  const int below = anchor.bottom() + reach;
+  const int middle_y = anchor.y + (anchor.height - height) / 2;
+  return {PixelBox{anchor.x, above, width, height},
+          PixelBox{anchor.right() - width, above, width, height},
+          PixelBox{anchor.x, below, width, height},
+          PixelBox{anchor.right() - width, below, width, height},
+          PixelBox{right, middle_y, width, height},
+          PixelBox{left - width, middle_y, width, height},
+          PixelBox{right, above, width, height},
+          PixelBox{left - width, below, width, height}};
+}
+
+// The part of the anchor within the frame; its nearest pixel of the frame where there is none.
+PixelBox inside(const PixelBox& anchor, const PixelBox& frame) {
+  if (const auto common = intersection(anchor, frame)) return *common;
+  return {std::clamp(anchor.x, frame.x, frame.right() - 1),
+          std::clamp(anchor.y, frame.y, frame.bottom() - 1),
+          1,
+          1};
+}
 
 // The drawing data of one intruder.
 struct Marked {
@@ -42,8 +92,6 @@ std::vector<Marked> marked(const annotation::Frame& truth, const std::vector<std
 }
 
 // Draws the outline of a box with a dark rim, which is visible on a bright sky.
-PixelBox outlined(const Box& box) { return wider(pixels_of(box), 2); }
-
 void draw_box(cv::Mat& canvas, const Marked& one) {
   outline(canvas, wider(one.box, 1), 1, kBlack);
   if (one.is_hidden)
@@ -73,16 +121,38 @@ PixelBox caption_place(const Placing& placing, int width, int height) {
                                            PixelBox{right, bottom, width, height},
                                            PixelBox{kMarginPx, kMarginPx, width, height},
                                            PixelBox{right, kMarginPx, width, height}};
-  const auto covers = [&](const PixelBox& corner) {
-    std::int64_t sum = 0;
-    for (const PixelBox& box : placing.boxes) sum += common_px(corner, box);
-    return sum;
-  };
   return *std::ranges::min_element(
-      corners, [&](const auto& a, const auto& b) { return covers(a) < covers(b); });
+      corners, {}, [&](const PixelBox& corner) { return covered_px(corner, placing.boxes); });
 }
 
 }  // namespace
+
+std::optional<PixelBox> place_label(const PixelBox& anchor,
+                                    int width,
+                                    int height,
+                                    const Placing& placing) {
+  const PixelBox& frame = placing.frame;
+  if (width > frame.width || height > frame.height || width <= 0 || height <= 0)
+    return std::nullopt;
+  const PixelBox seen = inside(anchor, frame);
+  std::optional<PixelBox> best;
+  std::int64_t least = std::numeric_limits<std::int64_t>::max();
+  for (int ring = 0; ring < kRings; ++ring) {
+    const int reach = kGapPx + ring * height;
+    if (reach > std::max(frame.width, frame.height)) break;
+    for (PixelBox place : around(seen, reach, width, height)) {
+      place.x = std::clamp(place.x, frame.x, frame.right() - width);
+      if (!is_allowed(place, placing)) continue;
+      const std::int64_t cost = covered_px(place, placing.boxes);
+      if (cost == 0) return place;
+      if (cost < least) {
+        least = cost;
+        best = place;
+      }
+    }
+  }
+  return best;
+}
 
 image::Rgb8 overlay(const image::Picture& picture,
                     const annotation::Frame& truth,
@@ -94,7 +164,7 @@ image::Rgb8 overlay(const image::Picture& picture,
   Placing placing{{0, 0, picture.width, picture.height}, {}, {}};
   for (const Marked& one : all) {
     draw_box(canvas, one);
-    placing.boxes.push_back(outlined(one.box));
+    placing.boxes.push_back(wider(pixels_of(one.box), 2));
   }
   const std::string caption = fmt::format("frame {}  {:.2f} s", truth.frame, truth.time_s);
   const cv::Size caption_size = text_size(caption, size_px);

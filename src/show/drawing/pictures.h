@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "foundation/geometry/box.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 #include "labels/annotation/truth.h"
@@ -53,6 +55,25 @@ image::Rgb8 tiled(const std::string& title, const std::vector<NamedPicture>& pic
 image::Rgb8 overlay(const image::Picture& picture,
                     const annotation::Frame& truth,
                     const std::vector<std::string>& ids = {});
+
+// Where labels stand without overlaps between them.
+struct Placing {
+  // No label leaves it.
+  PixelBox frame;
+  // Places of other labels; no label overlaps them.
+  std::vector<PixelBox> taken;
+  // Boxes; a label overlaps them only where nothing else is left.
+  std::vector<PixelBox> boxes;
+};
+
+// The place of a label of `width` by `height` pixels for the box `anchor`. The candidates are the
+// eight places around the box, then rings of places at distances that grow by a label's height. The
+// first one without an overlap is chosen, else the one that overlaps the fewest pixels of `boxes`.
+// nullopt where every candidate overlaps a label or leaves the frame.
+std::optional<PixelBox> place_label(const PixelBox& anchor,
+                                    int width,
+                                    int height,
+                                    const Placing& placing);
 
 // The input of closeup() for one frame.
 struct Closeup {
