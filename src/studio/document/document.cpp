@@ -7,7 +7,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/text.h"
 #include "scene/scene/tables.h"
 #include "studio/document/splice.h"
 #include "studio/document/tree.h"

@@ -22,7 +22,7 @@
 //   GET /thumb?token=T&frame=K&width=160
 //   GET /aircraft.jpg?token=T&name=...
 //   GET /film?token=T&which=original|rendered, with ranges
-//   WebSocket /ws?token=T      session/request.h
+//   WebSocket /ws?token=T      messages/request.h
 //
 // No part of a request names a file. Messages, headers, connections and what waits to be sent are
 // bounded.

@@ -8,7 +8,6 @@
 #include "aircraft/fleet/fleet.h"
 #include "aircraft/fleet/flight_limits.h"
 #include "aircraft/fleet/scale.h"
-#include "foundation/base/error.h"
 #include "foundation/base/names.h"
 #include "scene/scene/distractor.h"
 #include "sequence/demo/aircraft_sheet.h"

@@ -8,8 +8,6 @@
 #include <set>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "encounter/passage/passage.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/box.h"

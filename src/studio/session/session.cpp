@@ -17,11 +17,9 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/unfinished.h"
 #include "picture/video/writer.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
-#include "sequence/setup/from_scene.h"
 #include "studio/messages/request.h"
 #include "studio/session/answers.h"
 #include "studio/session/gallery.h"

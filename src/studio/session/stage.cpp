@@ -2,7 +2,6 @@
 #include "studio/session/stage.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
