@@ -11,7 +11,7 @@ provide(studio);
 // The only one that the page names, so that none is made before there is a studio.
 customElements.define('airtruth-studio', StudioPage);
 window.addEventListener('pagehide', () => studio.end());
-studio.begin();
+studio.connection.begin();
 
 // For tests: how long an event of a drag took until its picture was drawn, and whether all is at rest.
 declare global {

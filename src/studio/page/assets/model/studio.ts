@@ -61,10 +61,6 @@ export class Studio {
     });
   }
 
-  begin(): void {
-    this.connection.begin();
-  }
-
   // For a page that ends: what the server has not answered is kept for the next one.
   end(): void {
     const unsent = this.edits.unsent();

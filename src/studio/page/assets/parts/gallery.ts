@@ -47,16 +47,14 @@ export class Gallery extends DialogPart {
   protected fill(): Node[] {
     this.natural.append(
         ...NATURAL.map(({words, ...choice}) => h('button', {onclick: () => this.chosen(choice)}, words)));
-    const useOwn = () => {
-      if (this.own.value.trim()) this.chosen({kind: 'aircraft', aircraft: this.own.value.trim(), length_m: 10});
-    };
     return [
       h('div', {class: 'search'}, this.input, this.count), this.natural, this.cards,
       h('form', {
         class: 'own-model',
         onsubmit: (event: Event) => {
           event.preventDefault();
-          useOwn();
+          const aircraft = this.own.value.trim();
+          if (aircraft) this.chosen({kind: 'aircraft', aircraft, length_m: 10});
         }
       },
         this.own, h('button', {}, 'Use this model'))

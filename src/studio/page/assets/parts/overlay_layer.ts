@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {BoxPx, Clip, ExactBox} from '../model/contract';
 import {flyersOf, isSame, trackOf} from '../model/flyers';
-import {freePlace, nedAt, round, timeAt} from '../model/geometry';
+import {freePlace, nedAt, round, speedOf, velocityAt} from '../model/geometry';
 import type {Everything} from '../model/store';
 import {Keyed, attribute, s, text, wordsWidth} from './part';
 
@@ -114,12 +114,13 @@ export class OverlayLayer {
         this.motion.append(
             this.words(x + 4 * px, y + LABEL_PX * px, `${Math.abs(elevation)}° ${elevation < 0 ? 'down' : 'up'}`));
     }
-    const [a, b] = [nedAt(plan, plan.own.ned, frame), nedAt(plan, plan.own.ned, frame + 1)];
-    if (!a || !b) return;
-    const speed_mps =
-        Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / (timeAt(frame + 1, clip) - timeAt(frame, clip));
-    this.motion.append(this.words(
-        10 * px, clip.height - 10 * px, `own speed ${round(speed_mps, 1)} m/s, height ${round(-a[2], 0)} m`));
+    // To the next frame.
+    const velocity = velocityAt(plan, plan.own.ned, frame + 0.5, clip);
+    const own = nedAt(plan, plan.own.ned, frame);
+    if (velocity && own)
+      this.motion.append(this.words(
+          10 * px, clip.height - 10 * px,
+          `own speed ${round(speedOf(velocity), 1)} m/s, height ${round(-own[2], 0)} m`));
   }
 
   private words(x: number, y: number, words: string): SVGTextElement {

@@ -55,7 +55,7 @@ export function wordsWidth(words: string, size_px: number): number {
 type Child = Node|string|null|undefined|false;
 type Attributes = Record<string, string|number|boolean|null|undefined|EventListener>;
 
-function dress(element: Element, attributes: Attributes): void {
+function dressed<Of extends Element>(element: Of, attributes: Attributes, children: Child[]): Of {
   for (const [name, value] of Object.entries(attributes)) {
     if (typeof value === 'function')
       element.addEventListener(name.slice(2), value);
@@ -64,6 +64,8 @@ function dress(element: Element, attributes: Attributes): void {
     else if (value !== false && value !== null && value !== undefined)
       element.setAttribute(name, String(value));
   }
+  element.append(...children.filter(isChild));
+  return element;
 }
 
 const isChild = (child: Child): child is Node|string => child !== null && child !== undefined && child !== false;
@@ -71,19 +73,13 @@ const isChild = (child: Child): child is Node|string => child !== null && child 
 // An element with attributes, listeners (onclick and so on) and children.
 export function h<Name extends keyof HTMLElementTagNameMap>(
     name: Name, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[Name] {
-  const element = document.createElement(name);
-  dress(element, attributes);
-  element.append(...children.filter(isChild));
-  return element;
+  return dressed(document.createElement(name), attributes, children);
 }
 
 // The same of SVG.
 export function s<Name extends keyof SVGElementTagNameMap>(
     name: Name, attributes: Attributes = {}, ...children: Child[]): SVGElementTagNameMap[Name] {
-  const element = document.createElementNS('http://www.w3.org/2000/svg', name);
-  dress(element, attributes);
-  element.append(...children.filter(isChild));
-  return element;
+  return dressed(document.createElementNS('http://www.w3.org/2000/svg', name), attributes, children);
 }
 
 // Where an arrow key points, to the right and up, for an element that takes it from the page; null for any other key.

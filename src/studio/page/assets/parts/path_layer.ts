@@ -218,7 +218,6 @@ export class PathLayer {
   }
 
   private key(event: KeyboardEvent, index: number): void {
-    const {draft} = this.studio.store.now;
     const {flyer} = this.studio;
     const moment = this.studio.moment(index);
     if (!flyer || !moment || event.ctrlKey || event.altKey || event.metaKey) return;
@@ -227,7 +226,7 @@ export class PathLayer {
     if (by) {
       if (event.timeStamp - this.wheelMerge.at > PAUSE_MS) this.wheelMerge.name = this.studio.merge('keys');
       this.wheelMerge.at = event.timeStamp;
-      const from = draft && isSame(draft.path, moment.path) ? draft.pixel : moment.pixel;
+      const from = this.draftOf(moment) ?? moment.pixel;
       this.studio.show(moment.frame);
       this.moveTo(
           {moment, flyer, offset: [0, 0], merge: this.wheelMerge.name, last: from, isMoved: false},

@@ -49,7 +49,7 @@ export class PictureView extends Part {
 
   protected update(changed: Set<Member>): void {
     if (changed.has('look') || changed.has('clip')) this.draw();
-    this.place();
+    attribute(this.svg, 'viewBox', this.shown.join(' '));
     const px = ui() / this.scale;
     const room = this.shown;
     this.overlay.update(this.now, px, room, this.paths.update(px, room));
@@ -113,10 +113,6 @@ export class PictureView extends Part {
   private get shown(): BoxPx {
     const {x, y, scale} = this.look;
     return [x, y, Math.max(1, this.clientWidth) / scale, Math.max(1, this.clientHeight) / scale];
-  }
-
-  private place(): void {
-    attribute(this.svg, 'viewBox', this.shown.join(' '));
   }
 
   private read(event: PointerEvent|null): void {

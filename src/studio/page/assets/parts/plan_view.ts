@@ -67,11 +67,6 @@ export class PlanView extends SideView {
     this.taken.push([x - r, y - r, 2 * r, 2 * r]);
   }
 
-  private get ownVelocity(): Ned|null {
-    const {plan, clip} = this.now;
-    return plan && clip ? velocityAt(plan, plan.own.ned, 0, clip) : null;
-  }
-
   private ground([n, e]: Ned): Ground {
     const [dn, de] = [n - this.origin[0], e - this.origin[1]];
     const [c, si] = [Math.cos(radians(this.course_deg)), Math.sin(radians(this.course_deg))];
@@ -100,9 +95,7 @@ export class PlanView extends SideView {
   // The view holds the own path and, of the others, what is not too far away.
   private frameAll(plan: Plan, clip: Clip, width: number, height: number): void {
     this.origin = plan.own.ned[0] ?? [0, 0, 0];
-    const velocity = this.ownVelocity;
-    this.course_deg =
-        velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : plan.own.heading_deg;
+    this.course_deg = courseOr(velocityAt(plan, plan.own.ned, 0, clip), plan.own.heading_deg);
     const others = plan.tracks.flatMap((track) => [...track.ned, approachOf(plan, track, clip)?.place ?? null]);
     const near = others.filter(
         (ned): ned is Ned => ned !== null && Math.hypot(ned[0] - this.origin[0], ned[1] - this.origin[1]) < MOST_M);
@@ -156,7 +149,7 @@ export class PlanView extends SideView {
 
   private ownMark(plan: Plan, clip: Clip, own: Ned): SVGGElement {
     const velocity = velocityAt(plan, plan.own.ned, this.now.frame, clip);
-    const angle = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) - this.course_deg : 0;
+    const angle = courseOr(velocity, this.course_deg) - this.course_deg;
     const [x, y] = this.at(own);
     this.take(x, y, 9 * this.px);
     return s(
@@ -289,6 +282,10 @@ export class PlanView extends SideView {
 }
 customElements.define('studio-plan', PlanView);
 
+// Of what hovers another one.
+const courseOr = (velocity: Ned|null, otherwise_deg: number) =>
+    velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : otherwise_deg;
+
 interface CpaPlace {
   own: Ned;
   place: Ned;
@@ -302,7 +299,7 @@ function approachOf(plan: Plan, track: Track, clip: Clip): CpaPlace|null {
   const own = nedAt(plan, plan.own.ned, frame);
   const velocity = velocityAt(plan, plan.own.ned, frame, clip);
   if (!own || !velocity) return null;
-  const ownCourse_deg = Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : 0;
+  const ownCourse_deg = courseOr(velocity, 0);
   const [c, si] = [Math.cos(radians(ownCourse_deg)), Math.sin(radians(ownCourse_deg))];
   const {right_m, ahead_m, above_m} = track.cpa;
   return {
