@@ -140,19 +140,16 @@ export type BoxPx = [number, number, number, number];
 export interface Rendered {
   folder: string;
   video: string;
-  boxes: [
-    number,
-    {
-      id: string;
-      box: BoxPx
-    }[]
-  ][];
+  boxes: [number, FilmBox[]][];
 }
 
-export interface ExactBox {
-  table: Path;
+export interface FilmBox {
   id: string;
   box: BoxPx;
+}
+
+export interface ExactBox extends FilmBox {
+  table: Path;
   range_m: number;
 }
 

@@ -72,10 +72,7 @@ const nedMix =
 
 // A place among those at the plan's frames. Outside of them it goes on straight.
 export function nedAt(plan: Plan, ned: (Ned|null)[], frame: number): Ned|null {
-  const known = plan.frames.map((f, k) => ({f, ned: ned[k]})).filter((one): one is {
-    f: number;
-    ned: Ned
-  } => Boolean(one.ned));
+  const known = plan.frames.flatMap((f, k) => (ned[k] ? [{f, ned: ned[k]!}] : []));
   if (!known.length) return null;
   if (known.length === 1) return known[0].ned;
   let k = known.findIndex((one) => one.f >= frame);

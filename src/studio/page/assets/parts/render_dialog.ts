@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {BoxPx, Clip, Rendered} from '../model/contract';
+import type {Clip, FilmBox, Rendered} from '../model/contract';
 import {clamp, frameAt, timeAt} from '../model/geometry';
 import type {Member} from '../model/store';
 import {DialogPart} from './dialog';
@@ -8,11 +8,6 @@ import {attribute, h, s, text, token} from './part';
 
 const MOST_AHEAD_S = 0.5;  // of one film to the other, beyond which it does not catch up by its speed
 const CATCH_UP = 4;        // of its speed, for each second that it is ahead
-
-interface FilmBox {
-  id: string;
-  box: BoxPx;
-}
 
 // Rendering with its progress, and then the film over the original from the frame shown on, parted by a line that is
 // drawn aside.
