@@ -52,18 +52,13 @@ std::vector<std::int64_t> spread(std::int64_t count, std::int64_t most) {
 }
 
 // The world with one for each party, which stands for all of it: the boxes of a flock's birds in
-// hundreds of frames take longer than a drag may.
+// hundreds of frames take longer than a drag may. Without what moves while a frame is exposed,
+// which would take most of the time and widens a box by less than is seen in a path.
 setup::World world_of_middles(const setup::World& whole,
                               const std::vector<preview::Party>& parties) {
   setup::World world = whole;
   world.actors.clear();
   for (const preview::Party& party : parties) world.actors.push_back(whole.actors[party.middle]);
-  return world;
-}
-
-// Without what moves while a frame is exposed, which would take most of the time and widens a box
-// by less than is seen in a path.
-setup::World instant(setup::World world) {
   world.shutter = {};
   return world;
 }
@@ -187,10 +182,9 @@ class Planner {
         tables_(tables),
         parties_(preview::parties_of(stage.scene())),
         middles_(world_of_middles(stage.world(), parties_)),
-        still_(instant(middles_)),
         checks_(checks_of(stage)) {
     for (const std::int64_t k : spread(stage.frame_count(), kMostPoints))
-      moments_.push_back(setup::moment_at(still_, k, stage.time_s(k), stage.shake_at(k)));
+      moments_.push_back(setup::moment_at(middles_, k, stage.time_s(k), stage.shake_at(k)));
   }
 
   Json plan() const {
@@ -302,8 +296,8 @@ class Planner {
   Json handles(const Json& table, std::size_t actor) const {
     Json result = Json::array();
     if (!table.is_array()) return result;
-    setup::World alone = still_;
-    alone.actors = {still_.actors[actor]};
+    setup::World alone = middles_;
+    alone.actors = {middles_.actors[actor]};
     for (const scene::Seen& seen : stage_.stated_seen(parties_[actor].middle)) {
       const std::int64_t frame = stage_.frame_near(seen.time_s);
       const setup::Moment moment =
@@ -338,7 +332,6 @@ class Planner {
   const document::Tables& tables_;
   std::vector<preview::Party> parties_;
   setup::World middles_;
-  setup::World still_;
   // Of the frames at which paths have their points.
   std::vector<setup::Moment> moments_;
   Checks checks_;
