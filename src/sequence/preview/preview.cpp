@@ -207,13 +207,8 @@ class Previewer {
     image::Rgb8 rgb = image::rgb8_from_picture(frame.picture);
     const double scale = std::min(static_cast<double>(kMainWidthPx) / rgb.width,
                                   static_cast<double>(kMainHeightPx) / rgb.height);
-    const auto scaled_px = [&](int px) {
-      return std::max(1, static_cast<int>(std::lround(px * scale)));
-    };
-    image::Rgb8 scaled = drawing::resized(rgb,
-                                          scaled_px(rgb.width),
-                                          scaled_px(rgb.height),
-                                          scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+    const image::Rgb8 scaled =
+        drawing::scaled(rgb, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
     cv::Mat canvas = image::mat_of(scaled).clone();
     for (std::size_t i = 0; i < parties_.size(); ++i) draw_path(canvas, i, scale);
     draw_ticks(canvas, scale);

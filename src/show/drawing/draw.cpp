@@ -56,6 +56,11 @@ image::Rgb8 resized(const image::Rgb8& picture, int width, int height, int inter
   return image::rgb8_of(target);
 }
 
+image::Rgb8 scaled(const image::Rgb8& picture, double scale, int interpolation) {
+  const auto side = [&](int px) { return std::max(1, static_cast<int>(std::lround(px * scale))); };
+  return resized(picture, side(picture.width), side(picture.height), interpolation);
+}
+
 void text(cv::Mat& canvas,
           const std::string& words,
           int x,

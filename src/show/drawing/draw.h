@@ -30,6 +30,8 @@ cv::Scalar intruder_colour(std::size_t index);
 image::Rgb8 dark_paper(int width, int height);
 
 image::Rgb8 resized(const image::Rgb8& picture, int width, int height, int interpolation);
+// `scale` times as large, at least one pixel wide and high.
+image::Rgb8 scaled(const image::Rgb8& picture, double scale, int interpolation);
 
 // Draws text with a dark rim, which is legible on any background. (x, y) is the left end of the
 // baseline.

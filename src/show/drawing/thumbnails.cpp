@@ -57,15 +57,6 @@ image::Rgb8 square(const image::Picture& picture, const Cutout& cutout, int side
   return resized(square, side, side, size > side ? cv::INTER_AREA : cv::INTER_CUBIC);
 }
 
-// The whole picture, at most `width` pixels wide.
-image::Rgb8 small_copy(const image::Rgb8& picture, int width) {
-  const double scale = std::min(1.0, static_cast<double>(width) / picture.width);
-  const auto scaled = [&](int length) {
-    return std::max(1, static_cast<int>(std::lround(length * scale)));
-  };
-  return resized(picture, scaled(picture.width), scaled(picture.height), cv::INTER_AREA);
-}
-
 }  // namespace
 
 image::Rgb8 strip(const std::vector<image::Rgb8>& pictures) {
@@ -92,7 +83,8 @@ Still still_of(const image::Picture& picture,
                const std::optional<Box>& subject,
                const CutoutOptions& options) {
   Still still{.index = index, .width = picture.width};
-  still.whole = video::jpeg_of(small_copy(image::rgb8_from_picture(picture), options.whole_width),
+  const double scale = std::min(1.0, static_cast<double>(options.whole_width) / picture.width);
+  still.whole = video::jpeg_of(scaled(image::rgb8_from_picture(picture), scale, cv::INTER_AREA),
                                options.quality);
   if (subject) still.close = cutout_of(picture, *subject, options);
   return still;

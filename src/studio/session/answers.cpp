@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studio/session/answers.h"
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <new>
 
@@ -71,11 +69,7 @@ std::string jpeg_of(const image::Rgb8& rgb) {
 
 std::string jpeg_of(const image::Picture& picture, const PixelBox& part, double scale) {
   const image::Rgb8 rgb = image::rgb8_from_picture(picture, part);
-  if (scale >= 1) return jpeg_of(rgb);
-  const auto scaled = [&](int px) {
-    return std::max(1, static_cast<int>(std::lround(px * scale)));
-  };
-  return jpeg_of(drawing::resized(rgb, scaled(rgb.width), scaled(rgb.height), cv::INTER_AREA));
+  return scale < 1 ? jpeg_of(drawing::scaled(rgb, scale, cv::INTER_AREA)) : jpeg_of(rgb);
 }
 
 Json values_of(const camera_file::Calibration& found) {
