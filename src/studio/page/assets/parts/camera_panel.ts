@@ -4,7 +4,7 @@ import {numberOf, tableOf} from '../model/flyers';
 import {round} from '../model/geometry';
 import type {Member} from '../model/store';
 import {NumberField} from './fields';
-import {Part, h, text} from './part';
+import {Part, button, h, text} from './part';
 
 interface Row {
   field: NumberField;
@@ -29,9 +29,9 @@ export class CameraPanel extends Part {
   private origin = h('p', {class: 'hint'});
   private found = h('p', {class: 'hint'});
   private flight = h('p', {class: 'hint'});
-  private forget =
-      h('button', {onclick: () => this.studio.edit([{remove: ['camera', 'attitude_yaw_pitch_roll_deg']}])},
-        'Measure attitude from the horizon');
+  private forget = button(
+      'Measure attitude from the horizon',
+      () => this.studio.edit([{remove: ['camera', 'attitude_yaw_pitch_roll_deg']}]));
 
   protected build(): void {
     const lens = this.row(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Everything, Member} from '../model/store';
-import {Part, h} from './part';
+import {Part, button, h} from './part';
 
 // A dialog of the browser's own, open while the store says so: it keeps the focus, and Escape closes it.
 export abstract class DialogPart extends Part {
@@ -14,8 +14,7 @@ export abstract class DialogPart extends Part {
 
   protected build(): void {
     const close =
-        h('button',
-          {class: 'close', 'aria-label': 'Close', title: 'Close (Escape)', onclick: () => this.dialog.close()}, '×');
+        button('×', () => this.dialog.close(), {class: 'close', 'aria-label': 'Close', title: 'Close (Escape)'});
     this.dialog.setAttribute('aria-label', this.title_);
     this.dialog.append(h('header', {}, h('h2', {}, this.title_), close), ...this.fill());
     this.dialog.addEventListener('close', () => {

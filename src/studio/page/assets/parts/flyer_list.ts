@@ -3,7 +3,7 @@ import type {Path, Track} from '../model/contract';
 import {type Flyer, describedView, flyersOf, isSame, trackOf} from '../model/flyers';
 import type {Member} from '../model/store';
 import {FlyerPanel} from './flyer_panel';
-import {Keyed, Part, attribute, h, text} from './part';
+import {Keyed, Part, attribute, button, h, text} from './part';
 
 // What a begun scene may have guessed, by the names of its tables and keys.
 const GUESSED: [string, string][] = [
@@ -14,18 +14,14 @@ const GUESSED: [string, string][] = [
 // All that flies: one button each, with what the checks say of it, and below the chosen one its numbers.
 export class FlyerList extends Part {
   protected readonly watches: Member[] = ['state', 'plan', 'selected', 'clip'];
-  private add =
-      h('button', {
-        class: 'main',
-        title: 'Add (N)',
-        onclick: () => this.studio.store.put({dialog: 'gallery', addsAt: null, replaces: null})
-      },
-        'Add aircraft, birds, drones …');
+  private add = button(
+      'Add aircraft, birds, drones …', () => this.studio.store.put({dialog: 'gallery', addsAt: null, replaces: null}),
+      {class: 'main', title: 'Add (N)'});
   private list = h('ul', {class: 'flyers'});
   private empty = h('p', {class: 'hint'}, 'Nothing flies yet. Add an aircraft, or double-click the picture.');
   private guesses =
       h('p', {class: 'hint', hidden: true}, h('span', {}),
-        h('button', {class: 'small', onclick: () => this.studio.store.put({tab: 'camera'})}, 'Camera'));
+        button('Camera', () => this.studio.store.put({tab: 'camera'}), {class: 'small'}));
   private general = h('ul', {class: 'checks'});
   private panel = new FlyerPanel();
   private items = new Keyed<Flyer, HTMLLIElement>(
@@ -70,11 +66,11 @@ export class FlyerList extends Part {
   private renew(element: HTMLLIElement, flyer: Flyer): void {
     const isSelected = isSame(this.now.selected, flyer.path);
     attribute(element, 'class', `colour-${flyer.colour}${isSelected ? ' selected' : ''}`);
-    const [button, inView, checks] = ['button', '.in-view', '.checks'].map((one) => element.querySelector(one)!);
+    const [heading, inView, checks] = ['button', '.in-view', '.checks'].map((one) => element.querySelector(one)!);
     const {plan, clip} = this.now;
-    attribute(button, 'aria-expanded', String(isSelected));
-    text(button.children[0], flyer.id);
-    text(button.children[1], flyer.title);
+    attribute(heading, 'aria-expanded', String(isSelected));
+    text(heading.children[0], flyer.id);
+    text(heading.children[1], flyer.title);
     const track = trackOf(plan, flyer.path);
     text(inView, track && plan && clip ? describedView(track, plan, clip) : '');
     const lines = checksOf(track);

@@ -6,7 +6,7 @@ import type {Member} from '../model/store';
 import type {Studio} from '../model/studio';
 import {NumberField, type NumberOptions, choiceField} from './fields';
 import {NearMissForm} from './near_miss_form';
-import {Part, attribute, h, text, token} from './part';
+import {Part, attribute, button, h, text, token} from './part';
 
 interface KeyOptions extends Omit<NumberOptions, 'taken'> {
   key: string[];
@@ -132,14 +132,12 @@ export class FlyerPanel extends Part {
     this.replaceChildren(
         h('div', {class: 'what'}, this.portrait, h('span', {class: 'title'}),
           flyer.kind === 'aircraft' &&
-              h('button', {onclick: () => this.studio.store.put({dialog: 'gallery', replaces: path, addsAt: null})},
-                'Change …')),
+              button('Change …', () => this.studio.store.put({dialog: 'gallery', replaces: path, addsAt: null}))),
         ...(keys.length ? [h('div', {class: 'grid'}, ...keys.map((one) => this.keyField(one)))] : []),
         h('h3', {}, STATED[flyer.statement].replace(/^./, (first) => first.toUpperCase())), ...this.statement(flyer),
         ...(flyer.kind === 'aircraft' ? [this.nearMiss.element] : []),
-        h('div', {class: 'actions'}, h('button', {onclick: () => this.studio.duplicate(path)}, 'Duplicate'),
-          h('button', {class: 'danger', title: 'Delete on the heading', onclick: () => this.studio.remove(path)},
-            'Delete')),
+        h('div', {class: 'actions'}, button('Duplicate', () => this.studio.duplicate(path)),
+          button('Delete', () => this.studio.remove(path), {class: 'danger', title: 'Delete on the heading'})),
         this.seenAs);
   }
 
@@ -149,14 +147,13 @@ export class FlyerPanel extends Part {
         h('div', {class: 'moments', role: 'table', 'aria-label': 'Moments'}, MomentRow.head(),
           ...this.rows.map((row) => row.element)),
         h('div', {class: 'actions'},
-          h('button', {title: 'At the frame shown (M)', onclick: () => this.studio.addMoment()}, 'Add a moment here'),
-          flyer.kind === 'aircraft' &&
-              h('button', {onclick: () => this.restate(toApproach)}, 'State by closest approach')),
+          button('Add a moment here', () => this.studio.addMoment(), {title: 'At the frame shown (M)'}),
+          flyer.kind === 'aircraft' && button('State by closest approach', () => this.restate(toApproach))),
       ];
     }
     const turn = flyer.statement === 'lens' ?
         [] :
-        [h('div', {class: 'actions'}, h('button', {onclick: () => this.restate(toMoments)}, TO_MOMENTS))];
+        [h('div', {class: 'actions'}, button(TO_MOMENTS, () => this.restate(toMoments)))];
     if (flyer.statement !== 'approach') return turn;
     return [
       h('div', {class: 'grid'}, this.miss.element, ...ENCOUNTER.map((one) => this.keyField(one))), this.keeps, ...turn
@@ -244,17 +241,12 @@ class MomentRow {
     this.size = field('Size', '', 0.1, (value) => this.set(this.unit.select.value, value));
     for (const one of [this.x, this.y]) one.limit(-MOST_PX, MOST_PX);
     for (const {element} of [this.time, this.x, this.y]) element.querySelector('.unit')?.remove();
-    const remove =
-        h('button', {
-          class: 'small',
-          'aria-label': `Remove moment ${index + 1}`,
-          title: 'Remove this moment (Delete)',
-          onclick: () => {
-            this.studio.store.put({moment: index});
-            this.studio.removeMoment();
-          }
-        },
-          '×');
+    const pressed = () => {
+      this.studio.store.put({moment: index});
+      this.studio.removeMoment();
+    };
+    const remove = button(
+        '×', pressed, {class: 'small', 'aria-label': `Remove moment ${index + 1}`, title: 'Remove this moment (Delete)'});
     const size = h('span', {class: 'size'}, this.size.element, this.unit.select);
     this.element =
         h('div', {class: 'row', role: 'row', onfocusin: ((event: FocusEvent) => this.entered(event)) as EventListener},

@@ -4,7 +4,7 @@ import type {Choice} from '../model/flyers';
 import {round} from '../model/geometry';
 import type {Member} from '../model/store';
 import {DialogPart} from './dialog';
-import {h, token} from './part';
+import {button, h, token} from './part';
 
 const SEARCH_AFTER_MS = 150;
 const FLOCK = 8;
@@ -45,8 +45,7 @@ export class Gallery extends DialogPart {
   private asked = 0;
 
   protected fill(): Node[] {
-    this.natural.append(
-        ...NATURAL.map(({words, ...choice}) => h('button', {onclick: () => this.chosen(choice)}, words)));
+    this.natural.append(...NATURAL.map(({words, ...choice}) => button(words, () => this.chosen(choice))));
     return [
       h('div', {class: 'search'}, this.input, this.count), this.natural, this.cards,
       h('form', {

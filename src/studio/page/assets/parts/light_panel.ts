@@ -4,7 +4,7 @@ import {numberOf, tableOf} from '../model/flyers';
 import {type Point, clamp, degrees, radians, round, turned} from '../model/geometry';
 import type {Member} from '../model/store';
 import {NumberField, Slider, tick} from './fields';
-import {Part, arrow, attribute, h, s} from './part';
+import {Part, arrow, attribute, button, h, s} from './part';
 
 const RADIUS = 90;
 const SUN: [string, number, number, number][] =
@@ -62,9 +62,9 @@ export class LightPanel extends Part {
   private sliders: Slider[] = [];
   private haze!: Slider;
   private auto = tick('Measure blur, noise and haze from the clip', (isOn) => this.auto_(isOn));
-  private calibrate = h('button', {onclick: () => void this.studio.calibrate()}, 'Calibrate');
+  private calibrate = button('Calibrate', () => void this.studio.calibrate());
   private values = h('table', {class: 'values'});
-  private use = h('button', {onclick: () => this.useMeasured()}, 'Put these values into the scene');
+  private use = button('Put these values into the scene', () => this.useMeasured());
   private merge = '';
   private isHeld = false;
   private isHazeMeasured = false;  // where none is stated

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Member, Notice} from '../model/store';
-import {Keyed, Part, attribute, h, text} from './part';
+import {Keyed, Part, attribute, button, h, text} from './part';
 
 const INFO_MS = 5000;
 
@@ -22,8 +22,7 @@ export class NoticeBar extends Part {
     this.setAttribute('role', 'status');
     this.disk.append(
         h('span', {}, 'Another program has changed the file. If you keep yours, the next save replaces what it wrote.'),
-        h('button', {onclick: () => void this.studio.reload()}, 'Take the file'),
-        h('button', {onclick: () => void this.studio.keep()}, 'Keep mine'));
+        button('Take the file', () => void this.studio.reload()), button('Keep mine', () => void this.studio.keep()));
     this.append(this.lost, this.problem, this.disk, this.progress, this.list);
   }
 
@@ -55,8 +54,7 @@ export class NoticeBar extends Part {
     if (notice.kind === 'info') setTimeout(() => this.studio.store.unsay(notice.line), INFO_MS);
     return h(
         'p', {}, h('span', {}, notice.line),
-        h('button', {class: 'small', 'aria-label': 'Dismiss', onclick: () => this.studio.store.unsay(notice.line)},
-          '×'));
+        button('×', () => this.studio.store.unsay(notice.line), {class: 'small', 'aria-label': 'Dismiss'}));
   }
 }
 customElements.define('studio-notices', NoticeBar);

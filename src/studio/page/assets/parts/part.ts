@@ -76,6 +76,10 @@ export function h<Name extends keyof HTMLElementTagNameMap>(
   return dressed(document.createElement(name), attributes, children);
 }
 
+// A button, and what a press on it does.
+export const button = (words: string, onclick: () => void, more: Attributes = {}): HTMLButtonElement =>
+    h('button', {onclick, ...more}, words);
+
 // The same of SVG.
 export function s<Name extends keyof SVGElementTagNameMap>(
     name: Name, attributes: Attributes = {}, ...children: Child[]): SVGElementTagNameMap[Name] {

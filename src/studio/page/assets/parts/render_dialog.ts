@@ -4,7 +4,7 @@ import {clamp, frameAt, timeAt} from '../model/geometry';
 import type {Member} from '../model/store';
 import {DialogPart} from './dialog';
 import {tick} from './fields';
-import {attribute, h, s, text, token} from './part';
+import {attribute, button, h, s, text, token} from './part';
 
 const MOST_AHEAD_S = 0.5;  // of one film to the other, beyond which it does not catch up by its speed
 const CATCH_UP = 4;        // of its speed, for each second that it is ahead
@@ -16,8 +16,8 @@ export class RenderDialog extends DialogPart {
       ['dialog', 'busy', 'progress', 'film', 'clip', 'state', 'file', 'notices', 'connected'];
   protected readonly name = 'render';
   protected readonly title_ = 'Render';
-  private begin = h('button', {class: 'main', onclick: () => void this.studio.render()}, 'Render the clip');
-  private cancel = h('button', {onclick: () => void this.studio.cancel()}, 'Cancel');
+  private begin = button('Render the clip', () => void this.studio.render(), {class: 'main'});
+  private cancel = button('Cancel', () => void this.studio.cancel());
   private bar = h('progress', {'aria-label': 'Progress'});
   private words = h('output', {});
   private where = h('p', {class: 'hint'});
@@ -38,7 +38,7 @@ export class RenderDialog extends DialogPart {
     'aria-label': 'Swipe between the original and the film',
     oninput: () => this.partFilms()
   });
-  private play: HTMLButtonElement = h('button', {onclick: () => this.toggle()}, 'Play');
+  private play = button('Play', () => this.toggle());
   private time: HTMLInputElement = h('input', {
     type: 'range',
     min: 0,

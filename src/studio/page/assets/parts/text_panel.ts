@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Member} from '../model/store';
-import {Part, h} from './part';
+import {Part, button, h} from './part';
 
 const WORDS = /^(\s*\[\[?[^\]]*\]\]?)|^(\s*[\w.-]+)(?=\s*=)/;
 
@@ -11,12 +11,9 @@ export class TextPanel extends Part {
   private shown = '';
 
   protected build(): void {
-    const copy =
-        h('button',
-          {onclick: () => void navigator.clipboard?.writeText(this.now.state?.text ?? '').catch(() => undefined)},
-          'Copy');
+    const copy = () => void navigator.clipboard?.writeText(this.now.state?.text ?? '').catch(() => undefined);
     this.append(
-        h('div', {class: 'actions'}, copy),
+        h('div', {class: 'actions'}, button('Copy', copy)),
         h('pre', {tabindex: 0, 'aria-label': 'The scene file, read only'}, this.code));
   }
 

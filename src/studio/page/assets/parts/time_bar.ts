@@ -2,7 +2,7 @@
 import {flyersOf, isSame, momentsOf} from '../model/flyers';
 import {clamp, frameAt, round, timeAt} from '../model/geometry';
 import type {Member} from '../model/store';
-import {Part, attribute, h, s, text, token} from './part';
+import {Part, attribute, button, h, s, text, token} from './part';
 
 const THUMB_HEIGHT = 48;
 const THUMB_WIDTH = 160;  // asked of the server
@@ -12,8 +12,7 @@ const SPEEDS = [0.25, 0.5, 1, 2, 4];
 export class TimeBar extends Part {
   protected readonly watches: Member[] = ['clip', 'frame', 'playing', 'speed', 'state', 'selected', 'connected'];
   private play =
-      h('button', {class: 'play', 'aria-label': 'Play', title: 'Play or pause (Space)', onclick: () => this.toggle()},
-        '▶');
+      button('▶', () => this.toggle(), {class: 'play', 'aria-label': 'Play', title: 'Play or pause (Space)'});
   private label = h('output', {class: 'time'});
   private strip = h('div', {class: 'strip'});
   private thumbs = h('div', {class: 'thumbs', 'aria-hidden': 'true'});
@@ -39,7 +38,7 @@ export class TimeBar extends Part {
 
   protected build(): void {
     const step = (by: number, words: string, sign: string) =>
-        h('button', {'aria-label': words, title: words, onclick: () => this.studio.show(this.now.frame + by)}, sign);
+        button(sign, () => this.studio.show(this.now.frame + by), {'aria-label': words, title: words});
     this.strip.append(this.thumbs, this.marks, this.input);
     this.append(
         this.play, step(-1, 'One frame back (Left)', '◂'), step(1, 'One frame on (Right)', '▸'), this.strip, this.label,

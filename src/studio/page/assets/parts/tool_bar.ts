@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Member} from '../model/store';
 import {restored, tick} from './fields';
-import {Part, attribute, h, text} from './part';
+import {Part, attribute, button, h, text} from './part';
 import type {PictureView} from './picture_view';
 
 // The file and whether it is saved, undo and redo, what is laid over the picture, and rendering.
@@ -27,11 +27,10 @@ export class ToolBar extends Part {
             }
       },
         'Undo');
-  private redo = h('button', {title: 'Redo (Ctrl+Shift+Z)', onclick: () => void this.studio.redo()}, 'Redo');
-  private save = h('button', {title: 'Save the scene file (Ctrl+S)', onclick: () => void this.studio.save()}, 'Save');
+  private redo = button('Redo', () => void this.studio.redo(), {title: 'Redo (Ctrl+Shift+Z)'});
+  private save = button('Save', () => void this.studio.save(), {title: 'Save the scene file (Ctrl+S)'});
   private render =
-      h('button', {class: 'main', title: 'Render (R)', onclick: () => this.studio.store.put({dialog: 'render'})},
-        'Render …');
+      button('Render …', () => this.studio.store.put({dialog: 'render'}), {class: 'main', title: 'Render (R)'});
   private ticks =
       ([
         ['showsAircraft', 'Aircraft'], ['showsBoxes', 'Boxes'], ['showsHorizon', 'Horizon'], ['showsMotion', 'Motion']
@@ -41,9 +40,9 @@ export class ToolBar extends Part {
   protected build(): void {
     const picture = () => document.querySelector<PictureView>('studio-picture')!;
     const zoom = [
-      h('button', {'aria-label': 'Zoom out', title: 'Zoom out (-)', onclick: () => picture().zoom(1 / 1.25)}, '−'),
-      h('button', {title: 'Show the whole frame (F)', onclick: () => picture().fit()}, 'Fit'),
-      h('button', {'aria-label': 'Zoom in', title: 'Zoom in (+)', onclick: () => picture().zoom(1.25)}, '+')
+      button('−', () => picture().zoom(1 / 1.25), {'aria-label': 'Zoom out', title: 'Zoom out (-)'}),
+      button('Fit', () => picture().fit(), {title: 'Show the whole frame (F)'}),
+      button('+', () => picture().zoom(1.25), {'aria-label': 'Zoom in', title: 'Zoom in (+)'})
     ];
     this.append(
         h('h1', {}, 'airtruth studio'), this.file, this.saved,
@@ -51,12 +50,9 @@ export class ToolBar extends Part {
         h('fieldset', {class: 'group', 'aria-label': 'Shown over the picture'},
           ...this.ticks.map((one) => one.element)),
         h('span', {class: 'group'}, ...zoom), h('span', {class: 'space'}), this.render,
-        h('button', {
-          'aria-label': 'Help',
-          title: 'Keys and gestures (?)',
-          onclick: () => this.studio.store.put({dialog: 'help'})
-        },
-          '?'));
+        button(
+            '?', () => this.studio.store.put({dialog: 'help'}),
+            {'aria-label': 'Help', title: 'Keys and gestures (?)'}));
   }
 
   protected update(): void {
