@@ -132,7 +132,6 @@ export interface SliderOptions {
   min: number;
   max: number;
   isLogarithmic?: boolean;
-  step?: number;
   shown: (value: number) => string;
   moved: (value: number, moved_ms: number, isBegin: boolean) => void;
   ended: () => void;
@@ -151,7 +150,7 @@ export class Slider {
       type: 'range',
       min: map(options.min),
       max: map(options.max),
-      step: options.step ?? 0.01,
+      step: 0.01,
       'aria-label': options.label,
       oninput: (event: Event) => {
         options.moved(this.value, event.timeStamp, !this.isHeld);
@@ -183,6 +182,15 @@ export class Slider {
     this.output.textContent = words;
     this.input.setAttribute('aria-valuetext', words);
   }
+}
+
+// A line along which a number is chosen. `limits`: its ends, its step and where it begins.
+export function rangeInput(
+    label: string, moved: (value: number) => void,
+    limits: {min: number; max?: number; value: number; step: number}): HTMLInputElement {
+  const input: HTMLInputElement =
+      h('input', {type: 'range', 'aria-label': label, oninput: () => moved(input.valueAsNumber), ...limits});
+  return input;
 }
 
 export function choiceField(label: string, options: [string, string][], taken: (value: string) => void):

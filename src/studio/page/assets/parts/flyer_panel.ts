@@ -246,7 +246,8 @@ class MomentRow {
       this.studio.removeMoment();
     };
     const remove = button(
-        '×', pressed, {class: 'small', 'aria-label': `Remove moment ${index + 1}`, title: 'Remove this moment (Delete)'});
+        '×', pressed,
+        {class: 'small', 'aria-label': `Remove moment ${index + 1}`, title: 'Remove this moment (Delete)'});
     const size = h('span', {class: 'size'}, this.size.element, this.unit.select);
     this.element =
         h('div', {class: 'row', role: 'row', onfocusin: ((event: FocusEvent) => this.entered(event)) as EventListener},

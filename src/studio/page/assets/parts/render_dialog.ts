@@ -3,7 +3,7 @@ import type {Clip, FilmBox, Rendered} from '../model/contract';
 import {clamp, frameAt, timeAt} from '../model/geometry';
 import type {Member} from '../model/store';
 import {DialogPart} from './dialog';
-import {tick} from './fields';
+import {rangeInput, tick} from './fields';
 import {attribute, button, h, s, text, token} from './part';
 
 const MOST_AHEAD_S = 0.5;  // of one film to the other, beyond which it does not catch up by its speed
@@ -29,24 +29,10 @@ export class RenderDialog extends DialogPart {
   private showsBoxes = tick('Boxes', () => this.showBoxes());
   private stage = h('div', {class: 'films'});
   private line = h('div', {class: 'line', 'aria-hidden': 'true'});
-  private swipe: HTMLInputElement = h('input', {
-    type: 'range',
-    min: 0,
-    max: 100,
-    value: 10,
-    step: 0.5,
-    'aria-label': 'Swipe between the original and the film',
-    oninput: () => this.partFilms()
-  });
+  private swipe = rangeInput(
+      'Swipe between the original and the film', () => this.partFilms(), {min: 0, max: 100, value: 10, step: 0.5});
   private play = button('Play', () => this.toggle());
-  private time: HTMLInputElement = h('input', {
-    type: 'range',
-    min: 0,
-    step: 1,
-    value: 0,
-    'aria-label': 'Frame of the film',
-    oninput: () => this.goTo(this.time.valueAsNumber)
-  });
+  private time = rangeInput('Frame of the film', (frame) => this.goTo(frame), {min: 0, step: 1, value: 0});
   private film = h('div', {class: 'film'});
   private shown: Rendered|null = null;
   private frame = 0;           // of the film, on the screen

@@ -2,6 +2,7 @@
 import {flyersOf, isSame, momentsOf} from '../model/flyers';
 import {clamp, frameAt, round, timeAt} from '../model/geometry';
 import type {Member} from '../model/store';
+import {rangeInput} from './fields';
 import {Part, attribute, button, h, s, text, token} from './part';
 
 const THUMB_HEIGHT = 48;
@@ -17,14 +18,7 @@ export class TimeBar extends Part {
   private strip = h('div', {class: 'strip'});
   private thumbs = h('div', {class: 'thumbs', 'aria-hidden': 'true'});
   private marks = s('svg', {class: 'marks', 'aria-hidden': 'true', preserveAspectRatio: 'none'});
-  private input: HTMLInputElement = h('input', {
-    type: 'range',
-    min: 0,
-    value: 0,
-    step: 1,
-    'aria-label': 'Frame shown',
-    oninput: () => this.studio.show(this.input.valueAsNumber)
-  });
+  private input = rangeInput('Frame shown', (frame) => this.studio.show(frame), {min: 0, value: 0, step: 1});
   private speed: HTMLSelectElement =
       h('select', {
         'aria-label': 'Speed of play',
