@@ -10,7 +10,6 @@
 #include "foundation/base/error.h"
 #include "studio/document/splice.h"
 #include "studio/messages/request.h"
-#include "studio/messages/target.h"
 
 namespace {
 

@@ -6,7 +6,6 @@
 
 #include "foundation/base/error.h"
 #include "studio/messages/request.h"
-#include "studio/messages/target.h"
 #include "support/error_of.h"
 
 namespace airtruth::messages {

@@ -22,7 +22,6 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "studio/messages/request.h"
-#include "studio/messages/target.h"
 #include "studio/page/page.h"
 
 namespace airtruth::server {
