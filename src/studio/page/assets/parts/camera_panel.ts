@@ -3,7 +3,7 @@ import type {Change, Json, Ned, Plan, Table} from '../model/contract';
 import {numberOf, tableOf} from '../model/flyers';
 import {round} from '../model/geometry';
 import type {Member} from '../model/store';
-import {NumberField} from './fields';
+import {NumberField, type NumberOptions} from './fields';
 import {Part, button, h, text} from './part';
 
 interface Row {
@@ -119,13 +119,10 @@ export class CameraPanel extends Part {
   }
 
   private row(
-      options: {label: string; unit: string; step: number; min?: number; max?: number; placeholder?: string},
-      value: (scene: Table) => number | null, changes: (value: number, scene: Table) => Change[]): HTMLElement {
-    const field = new NumberField({
-      ...options,
-      taken: (taken) => {
-        if (this.now.state) this.studio.edit(changes(taken, this.now.state.scene));
-      }
+      options: NumberOptions, value: (scene: Table) => number | null,
+      changes: (value: number, scene: Table) => Change[]): HTMLElement {
+    const field = new NumberField(options, (taken) => {
+      if (this.now.state) this.studio.edit(changes(taken, this.now.state.scene));
     });
     this.rows.push({field, value});
     return field.element;

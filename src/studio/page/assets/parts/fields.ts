@@ -11,7 +11,6 @@ export interface NumberOptions {
   max?: number;
   isLabelHidden?: boolean;
   placeholder?: string;
-  taken: (value: number) => void;
   emptied?: () => void;  // where nothing is a value
 }
 
@@ -27,7 +26,7 @@ export class NumberField {
   private words = h('span', {class: 'expected', role: 'alert', hidden: true});
   private range: {min: number; max: number; unit: string; why: string};
 
-  constructor(private options: NumberOptions) {
+  constructor(private options: NumberOptions, private taken: (value: number) => void) {
     this.range = {min: options.min ?? -Infinity, max: options.max ?? Infinity, unit: options.unit, why: ''};
     this.input = h('input', {
       type: 'number',
@@ -80,7 +79,7 @@ export class NumberField {
     if (!this.mark() || !this.isTyped) return;
     this.isTyped = false;
     if (this.input.value !== '')
-      this.options.taken(this.input.valueAsNumber);
+      this.taken(this.input.valueAsNumber);
     else
       this.options.emptied?.();
   }

@@ -8,7 +8,7 @@ import {NumberField, type NumberOptions, choiceField} from './fields';
 import {NearMissForm} from './near_miss_form';
 import {Part, attribute, button, h, text, token} from './part';
 
-interface KeyOptions extends Omit<NumberOptions, 'taken'> {
+interface KeyOptions extends NumberOptions {
   key: string[];
   default: number|null;
   limits?: (encounter: Table) => [number, number];  // that follow from other numbers
@@ -65,19 +65,11 @@ export class FlyerPanel extends Part {
   private fields: {options: KeyOptions; field: NumberField}[] = [];
   private rows: MomentRow[] = [];
   private nearMiss = new NearMissForm(this.studio);
-  private miss = new NumberField({
-    label: 'Miss distance',
-    unit: 'm',
-    step: 1,
-    min: 0,
-    max: MOST_MISS_M,
-    taken:
-        (value) => {
-          const {flyer} = this.studio;
-          const {plan, clip} = this.now;
-          if (flyer && plan && clip && !this.passesAgain({miss_m: value}))
-            this.studio.edit(withMiss(flyer, plan, clip, value));
-        }
+  private miss = new NumberField({label: 'Miss distance', unit: 'm', step: 1, min: 0, max: MOST_MISS_M}, (value) => {
+    const {flyer} = this.studio;
+    const {plan, clip} = this.now;
+    if (flyer && plan && clip && !this.passesAgain({miss_m: value}))
+      this.studio.edit(withMiss(flyer, plan, clip, value));
   });
   private keeps = h('p', {class: 'hint'});
   private portrait = h('img', {alt: '', width: 56, height: 56});
@@ -161,7 +153,7 @@ export class FlyerPanel extends Part {
   }
 
   private keyField(options: KeyOptions): HTMLElement {
-    const field = new NumberField({...options, taken: (value) => this.take(options, value)});
+    const field = new NumberField(options, (value) => this.take(options, value));
     this.fields.push({options, field});
     return field.element;
   }
@@ -234,7 +226,7 @@ class MomentRow {
 
   constructor(private studio: Studio, private index: number) {
     const field = (label: string, unit: string, step: number, taken: (value: number) => void) =>
-        new NumberField({label: `${label} of moment ${index + 1}`, unit, step, isLabelHidden: true, taken});
+        new NumberField({label: `${label} of moment ${index + 1}`, unit, step, isLabelHidden: true}, taken);
     this.time = field('Time', 's', 0.1, (value) => this.setTime(value));
     this.x = field('X', 'px', 0.1, (value) => this.setPixel(0, value));
     this.y = field('Y', 'px', 0.1, (value) => this.setPixel(1, value));

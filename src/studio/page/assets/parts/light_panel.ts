@@ -71,14 +71,11 @@ export class LightPanel extends Part {
 
   protected build(): void {
     this.buildDome();
-    this.fields = SUN.map(([key, , min, max]) => new NumberField({
-                            label: key === SUN[0][0] ? 'Azimuth from north' : 'Elevation',
-                            unit: '°',
-                            step: 1,
-                            min,
-                            max,
-                            taken: (value) => this.studio.edit([{set: ['light', key], to: value}])
-                          }));
+    this.fields = SUN.map(([key, , min, max]) => {
+      const label = key === SUN[0][0] ? 'Azimuth from north' : 'Elevation';
+      return new NumberField(
+          {label, unit: '°', step: 1, min, max}, (value) => this.studio.edit([{set: ['light', key], to: value}]));
+    });
     this.sliders = WEATHER.map(
         ({key, ...options}) => this.slider(options, (value) => [['weather', key], value === 1 ? null : value]));
     this.haze = this.slider(

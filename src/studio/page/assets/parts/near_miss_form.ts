@@ -20,25 +20,21 @@ export class NearMissForm {
   private wanted = USUAL;
   private of = '';  // whose numbers these are
   private miss = new NumberField(
-      {label: 'Pass at', unit: 'm', step: 10, min: 0, max: MOST_MISS_M, taken: (value) => this.take({miss_m: value})});
-  private above = new NumberField({
-    label: 'Above',
-    unit: 'm',
-    step: 10,
-    min: -MOST_MISS_M,
-    max: MOST_MISS_M,
-    placeholder: 'flies level',
-    taken: (value) => this.take({above_m: value}),
-    emptied: () => this.take({above_m: null})
-  });
-  private speed = new NumberField({
-    label: 'Speed',
-    unit: 'm/s',
-    step: 5,
-    min: SPEEDS_MPS[0],
-    max: SPEEDS_MPS[1],
-    taken: (value) => this.take({speed_mps: value})
-  });
+      {label: 'Pass at', unit: 'm', step: 10, min: 0, max: MOST_MISS_M}, (value) => this.take({miss_m: value}));
+  private above = new NumberField(
+      {
+        label: 'Above',
+        unit: 'm',
+        step: 10,
+        min: -MOST_MISS_M,
+        max: MOST_MISS_M,
+        placeholder: 'flies level',
+        emptied: () => this.take({above_m: null})
+      },
+      (value) => this.take({above_m: value}));
+  private speed = new NumberField(
+      {label: 'Speed', unit: 'm/s', step: 5, min: SPEEDS_MPS[0], max: SPEEDS_MPS[1]},
+      (value) => this.take({speed_mps: value}));
   private side =
       choiceField('On the', [['right', 'right'], ['left', 'left']], (side) => this.take({right: side === 'right'}));
   private words = h('p', {class: 'hint'});
