@@ -132,8 +132,6 @@ export interface SliderOptions {
   max: number;
   isLogarithmic?: boolean;
   shown: (value: number) => string;
-  moved: (value: number, moved_ms: number, isBegin: boolean) => void;
-  ended: () => void;
 }
 
 // A factor or an angle by a slider, with its value in words.
@@ -143,7 +141,9 @@ export class Slider {
   private output = h('output', {});
   private isHeld = false;
 
-  constructor(private options: SliderOptions) {
+  constructor(
+      private options: SliderOptions, moved: (value: number, moved_ms: number, isBegin: boolean) => void,
+      ended: () => void) {
     const map = options.isLogarithmic ? Math.log2 : (v: number) => v;
     this.input = h('input', {
       type: 'range',
@@ -152,13 +152,13 @@ export class Slider {
       step: 0.01,
       'aria-label': options.label,
       oninput: (event: Event) => {
-        options.moved(this.value, event.timeStamp, !this.isHeld);
+        moved(this.value, event.timeStamp, !this.isHeld);
         this.isHeld = true;
         this.word(this.value);
       },
       onchange: () => {
         this.isHeld = false;
-        options.ended();
+        ended();
       },
     });
     this.element = h('label', {class: 'slider'}, h('span', {class: 'name'}, options.label), this.input, this.output);

@@ -3,7 +3,7 @@ import type {Json, MeasuredValue} from '../model/contract';
 import {numberOf, tableOf} from '../model/flyers';
 import {type Point, clamp, degrees, radians, round, turned} from '../model/geometry';
 import type {Member} from '../model/store';
-import {NumberField, Slider, tick} from './fields';
+import {NumberField, Slider, type SliderOptions, tick} from './fields';
 import {Part, arrow, attribute, button, h, s} from './part';
 
 const RADIUS = 90;
@@ -28,13 +28,8 @@ const short = (value: Json): Json =>
          typeof value === 'number' ? Number(value.toPrecision(4)) :
                                      value);
 
-interface WeatherKey {
+interface WeatherKey extends SliderOptions {
   key: string;
-  label: string;
-  min: number;
-  max: number;
-  isLogarithmic?: boolean;
-  shown: (value: number) => string;
   on?: [string, RegExp];  // the table and the keys that it is a factor on
 }
 const factor = (value: number) => `× ${Number(value.toPrecision(3))}`;
@@ -76,8 +71,8 @@ export class LightPanel extends Part {
       return new NumberField(
           {label, unit: '°', step: 1, min, max}, (value) => this.studio.edit([{set: ['light', key], to: value}]));
     });
-    this.sliders = WEATHER.map(
-        ({key, ...options}) => this.slider(options, (value) => [['weather', key], value === 1 ? null : value]));
+    this.sliders =
+        WEATHER.map((one) => this.slider(one, (value) => [['weather', one.key], value === 1 ? null : value]));
     this.haze = this.slider(
         {
           label: 'Visibility',
@@ -127,22 +122,18 @@ export class LightPanel extends Part {
     if (measured) this.showMeasured();
   }
 
-  private slider(options: Omit<WeatherKey, 'key'>, change: (value: number) => [string[], Json]): Slider {
+  private slider(options: SliderOptions, change: (value: number) => [string[], Json]): Slider {
     let merge = '';
-    return new Slider({
-      ...options,
-      moved: (value, moved_ms, isBegin) => {
-        if (isBegin) {
-          merge = this.studio.merge('slider');
-          this.studio.dragging(true);
-        }
-        const [path, to] = change(value);
-        const isThere = path[0] in (this.now.state?.scene ?? {}) && path[1] in tableOf(this.now.state?.scene[path[0]]);
-        if (to === null && !isThere) return;
-        this.studio.edit([to === null ? {remove: path} : {set: path, to}], merge, moved_ms);
-      },
-      ended: () => this.studio.dragging(false),
-    });
+    const moved = (value: number, moved_ms: number, isBegin: boolean) => {
+      if (isBegin) {
+        merge = this.studio.merge('slider');
+        this.studio.dragging(true);
+      }
+      const [path, to] = change(value);
+      const isThere = path[1] in tableOf(this.now.state?.scene[path[0]]);
+      if (to !== null || isThere) this.studio.edit([to === null ? {remove: path} : {set: path, to}], merge, moved_ms);
+    };
+    return new Slider(options, moved, () => this.studio.dragging(false));
   }
 
   private buildDome(): void {
