@@ -49,10 +49,9 @@ class Previewer {
         rate_hz_(opened_.info.frame_rate.value()),
         times_s_(
             opened_.background->times_s(scene.background.frame_count.value_or(video::kAllFrames))),
+        frames_(times_s_.empty() ? opened_.info.frame_count_estimate : std::ssize(times_s_)),
         duration_s_(video::are_of_rate(times_s_, rate_hz_)
-                        ? static_cast<double>(
-                              std::max<std::int64_t>(0, opened_.info.frame_count_estimate - 1)) /
-                              rate_hz_
+                        ? static_cast<double>(std::max<std::int64_t>(0, frames_ - 1)) / rate_hz_
                         : times_s_.back()) {
     check_seen();
     if (motion_) pipeline::place_seen(opened_, *motion_, options.stop);
@@ -92,10 +91,9 @@ class Previewer {
     return setup::MotionSource::from_cache(pipeline::motion_inputs(
         opened_, setup::sha256_of_video(scene().background.video, *opened_.inputs), options_));
   }
-  // The clip's length is its container's; render() refuses what no frame is at.
+  // render() refuses what no frame is at.
   void check_seen() const {
-    const video::StreamInfo& info = opened_.info;
-    if (info.frame_count_estimate <= 0 || info.variable_frame_rate) return;
+    if (frames_ <= 0 || opened_.info.variable_frame_rate) return;
     for (const scene::Intruder& intruder : scene().intruders)
       for (const scene::Seen& seen : intruder.seen)
         if (seen.time_s > duration_s_ + 1 / rate_hz_)
@@ -105,17 +103,15 @@ class Previewer {
                                   duration_s_),
                       seen.where);
   }
-  // The opened stream's number of frames is what the scene can use of the clip.
   void warn_of_length() const {
     const scene::Background& background = scene().background;
-    const std::int64_t frames = opened_.info.frame_count_estimate;
-    if (options_.warn && frames > 0 && background.frame_count.value_or(0) > frames)
+    if (options_.warn && frames_ > 0 && background.frame_count.value_or(0) > frames_)
       options_.warn(
           fmt::format("[background] frame_count is {}, and first_frame {}; the clip has only {} "
                       "frames from there",
                       *background.frame_count,
                       background.first_frame,
-                      frames));
+                      frames_));
   }
   void stop_if_asked() const {
     if (options_.stop.stop_requested()) throw Interrupted();
@@ -377,7 +373,10 @@ class Previewer {
   insertion::Painter painter_;
   double rate_hz_;
   std::vector<double> times_s_;  // when the video shows each frame, as far as it says so
-  double duration_s_;
+  // Those that the scene uses: counted, or else as the container gives them, whose length may be
+  // that of the sound.
+  std::int64_t frames_;
+  double duration_s_;  // from the first of them to the last
 };
 
 }  // namespace

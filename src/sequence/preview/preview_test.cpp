@@ -207,5 +207,28 @@ TEST(Preview, FramesOfAVariableRateHaveTheirNumbers) {
   }
 }
 
+// Eight frames at 30 Hz with 3 s of sound, in a container that states the length of both alone.
+TEST(Preview, AClipEndsWithItsLastFrame) {
+  const test_support::TemporaryFolder folder;
+  synthetic::FlightOptions flight;
+  flight.frame_count = 8;
+  flight.width = 320;
+  flight.height = 240;
+  demo::write_flight(synthetic::Flight(flight), folder / "flight.mp4", {});
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && ffmpeg -nostdin -v error -i flight.mp4 -f lavfi -i sine=d=3 "
+                              "-c:v copy -c:a flac sound.mkv";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  scene::Scene scene = head_on(folder / "sound.mkv");
+  EXPECT_EQ(preview_of(scene, {}).rows.size(), 1u);
+  // More than are there, and fewer than the sound has.
+  scene.background.frame_count = 30;
+  std::vector<std::string> warnings;
+  pipeline::Options options;
+  options.warn = [&](const std::string& text) { warnings.push_back(text); };
+  preview_of(scene, options);
+  EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("has only 8 frames from there")));
+}
+
 }  // namespace
 }  // namespace airtruth::preview
