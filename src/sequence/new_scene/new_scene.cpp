@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -319,8 +320,8 @@ std::vector<motion::FrameMotion> motion_in(const fs::path& video,
 Part part_of(const fs::path& video,
              const video::StreamInfo& info,
              const lens::Lens& lens,
-             const NewSceneOptions& options) {
-  Part part{.frames = info.frame_count_estimate, .motion = motion_in(video, lens, options)};
+             std::vector<motion::FrameMotion> motion) {
+  Part part{.frames = info.frame_count_estimate, .motion = std::move(motion)};
   const double rate_hz = info.frame_rate.value();
   const auto wanted = static_cast<std::size_t>(std::max(1.0, kEncounterS * rate_hz));
   const double turn_rad = kSteadyShare * radians(lens.horizontal_fov_deg());
@@ -524,9 +525,12 @@ std::string first_encounter(const lens::Lens& lens,
 
 std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
   const std::string background = as_written(video, options);
-  const video::StreamInfo info = info_of(video, options);
+  video::StreamInfo info = info_of(video, options);
   const LensWords lens = lens_for(video, info, options);
-  const Part part = part_of(video, info, lens.lens, options);
+  std::vector<motion::FrameMotion> motion = motion_in(video, lens.lens, options);
+  // All frames of a shorter clip are counted by now; a container may state its sound's length.
+  if (std::ssize(motion) < kMaxMotionFrames) info.frame_count_estimate = std::ssize(motion);
+  const Part part = part_of(video, info, lens.lens, std::move(motion));
   const CameraWords camera = camera_for(video, part, options);
   const double rate_hz = info.frame_rate.value();
   const auto seconds_of = [&](std::int64_t frames) {

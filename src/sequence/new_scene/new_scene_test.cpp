@@ -2,6 +2,7 @@
 #include "sequence/new_scene/new_scene.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <regex>
@@ -177,6 +178,14 @@ TEST(NewScene, ANumberOfFramesThatIsNotStatedIsAbout) {
     demo::write_flight(synthetic::Flight(options), folder / name, how);
     EXPECT_THAT(scene_text(folder / name, {}), testing::StartsWith(words));
   }
+  // With 3 s of sound the clip still ends with its last frame, at 3/30 s.
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && ffmpeg -nostdin -v error -i a.mp4 -f lavfi -i sine=d=3 -c:v "
+                              "copy -c:a flac sound.mkv";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const std::string text = scene_text(folder / "sound.mkv", {});
+  EXPECT_THAT(text, testing::StartsWith("# sound.mkv: about 4 frames of "));
+  EXPECT_THAT(text, testing::HasSubstr("the clip lasts 0.1 s"));
 }
 
 TEST(NewScene, PicturesAskForTheirRate) {
