@@ -265,10 +265,12 @@ LensWords lens_for(const fs::path& video,
   return estimated_lens(video, options);
 }
 
-// The up direction of the horizon that is seen in a picture.
+// The up direction of the horizon that is seen in a picture; empty for one that stands upside down.
 std::optional<Vector3> seen_up_in(const image::Picture& picture, const lens::Lens& lens) {
   const auto found = horizon::HorizonFinder(lens, nullptr).find(picture);
-  if (!found || !found->is_sharp()) return std::nullopt;
+  if (!found || !found->is_sharp() ||
+      std::abs(horizon::attitude_from_up(found->up_in_cam).roll_deg) > setup::kMostRollDeg)
+    return std::nullopt;
   return found->up_in_cam;
 }
 

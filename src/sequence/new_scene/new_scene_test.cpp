@@ -188,6 +188,23 @@ TEST(NewScene, ANumberOfFramesThatIsNotStatedIsAbout) {
   EXPECT_THAT(text, testing::HasSubstr("the clip lasts 0.1 s"));
 }
 
+// As a render of a scene without an attitude has it.
+TEST(NewScene, AHorizonThatStandsUpsideDownIsNone) {
+  const test_support::TemporaryFolder folder;
+  synthetic::FlightOptions options;
+  options.frame_count = 3;
+  options.width = 320;
+  options.height = 240;
+  options.own_aircraft = false;
+  demo::write_flight(synthetic::Flight(options), folder / "a.mp4", {});
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && ffmpeg -nostdin -v error -i a.mp4 -vf hflip,vflip turned.mp4";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_THAT(scene_text(folder / "a.mp4", {}), testing::HasSubstr("are those of the horizon"));
+  EXPECT_THAT(scene_text(folder / "turned.mp4", {}),
+              testing::HasSubstr("[0, 0, 0]  # no horizon was found in the first frame"));
+}
+
 TEST(NewScene, PicturesAskForTheirRate) {
   const test_support::TemporaryFolder folder;
   synthetic::FlightOptions options;

@@ -17,10 +17,6 @@
 namespace airtruth::setup {
 namespace {
 
-// A camera that nothing states to be upside down is not: a bright field below dark clouds or a test
-// pattern looks like it.
-constexpr double kMostRollDeg = 90;
-
 bool states_attitude(const scene::Camera& camera) {
   return camera.path_file || camera.attitude_yaw_pitch_roll_deg ||
          (camera.log && !read_log(*camera.log).attitudes.empty());

@@ -17,6 +17,9 @@ namespace airtruth::setup {
 // one is looked at. They are enough for a median, and 0.7 s of a clip of 30 frames/s.
 inline constexpr std::int64_t kLevelFrames = 21;
 inline constexpr std::int64_t kLevelEvery = 5;
+// A camera that nothing states to be upside down is not: a bright field below dark clouds or a test
+// pattern looks like it.
+inline constexpr double kMostRollDeg = 90;
 
 // The level attitude, with the heading of its path or log, of a camera for which neither the scene
 // nor its path or log states one; empty where one does.
