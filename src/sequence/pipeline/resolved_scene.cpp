@@ -328,7 +328,7 @@ StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
                           scene.background.first_frame,
                           scene.background.frame_rate_hz);
   scene::CameraFile file;
-  if (scene.realism.file) file = file_of(scene, {info.width, info.height});
+  if (scene.realism.file) file = file_of(result.scene, size_of(info));
   fill_from_file(result.scene, file);
   result.to_measure = left_to_measure(result.scene);
   check_profile(scene.realism, info, !result.to_measure.empty());
@@ -541,8 +541,9 @@ bool needs_calibration(const scene::Scene& scene) {
 camera_file::Calibration calibration_of(const scene::Scene& scene, const Options& options) {
   scene::Scene filled = scene;
   const video::StreamInfo info = video::Reader(scene.background.video, {}, options.warn).info();
-  const lens::ImageSize size{info.width, info.height};
-  if (scene.realism.file) fill_from_file(filled, file_of(scene, size));
+  const lens::ImageSize size = size_of(info);
+  setup::take_pixel_shape(filled.lens, size, info.sample_aspect.value());
+  if (scene.realism.file) fill_from_file(filled, file_of(filled, size));
   const auto mask = insertion::read_mask(scene, size);
   return measured_on(filled, size, mask ? &*mask : nullptr, *inputs_of(options), options);
 }

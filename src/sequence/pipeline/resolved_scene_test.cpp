@@ -2,6 +2,7 @@
 #include "sequence/pipeline/resolved_scene.h"
 
 #include <array>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/motion_source.h"
 #include "sequence/setup/world.h"
+#include "support/flight_file.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::pipeline {
@@ -38,7 +40,7 @@ class Resolve : public testing::Test {
   void keep(const camera_file::Calibration& calibration) const {
     camera_file::CacheKey key;
     key.video_sha256 = sha256_of_file(scene_.background.video);
-    key.lens = setup::words_of(setup::lens_of(scene_.lens, {640, 480}));
+    key.lens = setup::words_of(setup::lens_of(scene_.lens, {info_.width, info_.height}));
     key.altitude_m = 150;
     key.tone = setup::tone_of(scene_.camera_model);
     camera_file::store(disk_cache::Cache(root_ / "calibration"), key, calibration);
@@ -211,6 +213,29 @@ TEST_F(Resolve, AFileThatIsNotThereIsAnErrorAtTheTableThatNamesIt) {
   scene_.background.video = none;
   EXPECT_EQ(said_by([&] { open_background(scene_, options_); }),
             "s.toml:3:1: " + none + " does not exist; expected a file");
+}
+
+// Of 240 x 240 pixels that are 4/3 as wide as high, under 60 degrees of view: focal lengths of
+// 120 / tan(30 deg) = 207.8 px in heights and of 155.9 px in widths, 181.9 px in the mean.
+TEST_F(Resolve, PixelsThatAreNotSquareHaveOneLens) {
+  test_support::write_flight(root_ / "flight.mp4", 320, 240, 3);
+  const std::string command = "cd '" + root_.string() +
+                              "' && ffmpeg -nostdin -v error -y -i flight.mp4 -vf "
+                              "scale=240:240,setsar=4/3 clip.mkv";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  info_.width = info_.height = 240;
+  info_.sample_aspect = {4, 3};
+  const scene::Lens stated_lens = scene_.lens;
+  setup::take_pixel_shape(scene_.lens, {240, 240}, 4 / 3.0);
+  camera_file::Calibration found;
+  found.quantities.at("sensor.codec_step").values = {{7, 1}};
+  keep(found);
+  scene_.lens = stated_lens;
+  write_file(root_ / "camera.toml",
+             "[clip]\nwidth = 240\nheight = 240\nlens = \"pinhole 181.9 px\"\n");
+  scene_.realism.file = root_ / "camera.toml";
+  EXPECT_EQ(resolve().camera_model.codec_step, 7);
+  EXPECT_EQ(calibration_of(scene_, options_).quantities.at("sensor.codec_step").value().value, 7);
 }
 
 TEST_F(Resolve, AProfileThatCannotServeIsRefusedBeforeAnythingIsMeasured) {
