@@ -11,6 +11,7 @@ import math
 import os
 import shutil
 import struct
+import subprocess
 import unittest
 
 import program
@@ -99,6 +100,20 @@ class Compare(program.Case):
         real, inserted = measures("dark")["mean contrast below"]
         self.assert_near(real, measures("alike")["mean contrast below"][0], 0.02, "the real aircraft")
         self.assertLess(inserted, 1.1 * real)  # both are below 0
+
+    def test_pixels_that_are_not_square(self):
+        """The inserted aircraft flies beside the real one in a clip of three quarters of the columns, too: both move as fast."""
+        subprocess.run(["ffmpeg", "-nostdin", "-v", "error", "-i", path("real", "real.mkv"), "-vf", "scale=360:360:flags=area,setsar=4/3", "-c:v",
+                        "ffv1", path("narrow.mkv")], check=True)
+        head, *rows = read("boxes.csv").splitlines()
+        narrow = [head]
+        for row in rows:
+            frame, x, y, width, height = row.split(",")
+            narrow.append(f"{frame},{0.75 * float(x)},{y},{0.75 * float(width)},{height}")
+        write("narrow.csv", "\n".join(narrow) + "\n")
+        made("compare", "--real", "narrow.mkv", "--boxes", "narrow.csv", "--scene", "scene.toml", "-o", "narrow", "--no-match")
+        real, inserted = measures("narrow")["motion against the background"]
+        self.assert_near(inserted, real, 0.15, "motion against the background")
 
     def test_type_and_attitude_are_found(self):
         made(*COMPARE, "-o", "matched", "--types", "738/738-Ryanair,c172/news")

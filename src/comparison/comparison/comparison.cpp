@@ -232,7 +232,10 @@ class Comparing {
  private:
   void load(const scene::Scene& given) {
     const video::StreamInfo info = video::Reader(real_, {.threads = 1}).info();
-    lens_ = setup::lens_of(given.lens, {info.width, info.height});
+    const lens::ImageSize size{info.width, info.height};
+    scene::Lens of_clip = given.lens;
+    setup::take_pixel_shape(of_clip, size, info.sample_aspect.value());
+    lens_ = setup::lens_of(of_clip, size);
     rate_hz_ = info.frame_rate.value();
     const scene::Intruder& intruder = given.intruders[0];
     model::LoadOptions load;

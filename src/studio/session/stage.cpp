@@ -110,12 +110,13 @@ scene::Scene Stage::with_attitude(const scene::Scene& scene) {
   const std::string key = attitude_key_of(scene);
   if (key != attitude_key_) {
     const lens::ImageSize size{clip_->info().width, clip_->info().height};
+    setup::take_pixel_shape(result.lens, size, clip_->info().sample_aspect.value());
     std::shared_ptr<const image::Mask> mask;
     if (scene.background.mask) mask = options_.shared->mask_of(*scene.background.mask, size);
     camera_ = scene.camera;
     attitude_words_ = setup::state_attitude(
         camera_,
-        setup::lens_of(scene.lens, size),
+        setup::lens_of(result.lens, size),
         mask.get(),
         [&] { return pipeline::open_background(scene, options_); },
         options_.stop);

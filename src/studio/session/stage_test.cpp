@@ -354,6 +354,23 @@ TEST_F(OverAFlight, ThePlanHasTheAttitudeThatIsInForce) {
   EXPECT_NEAR(found[2].get<double>(), first.roll_deg, 0.01);
 }
 
+// A horizon that rolls is steeper in a picture of fewer columns.
+TEST_F(OverAFlight, TheAttitudeOverPixelsThatAreNotSquareIsThatOfARun) {
+  const std::string command = "cd '" + folder_->path().string() +
+                              "' && ffmpeg -nostdin -v error -y -i flight.mp4 -vf "
+                              "scale=240:240,setsar=4/3 narrow.mp4";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  scene::Scene scene = scene_of(kSeen);
+  scene.background.video = *folder_ / "narrow.mp4";
+  Stage stage(options());
+  stage.set(1, scene, {});
+  const auto roll_deg = [](const setup::World& world) {
+    return yaw_pitch_roll(world.camera.at(0)->world_from_body).roll_deg;
+  };
+  EXPECT_GT(std::abs(roll_deg(stage.world())), 1);
+  EXPECT_EQ(roll_deg(stage.world()), roll_deg(pipeline::open_scene(scene, options()).world));
+}
+
 // 20 m/s towards north: a degree of latitude is 111 km there.
 TEST_F(OverAFlight, ThePlanHasWhatALogGivesAtTheFirstFrame) {
   std::string rows =
