@@ -50,7 +50,10 @@ std::size_t intruder_index(const annotation::Frame& truth, const std::string& id
 }
 
 PixelBox area_around(const Box& box, const lens::Facts& lens) {
-  const double margin = std::max(4.0, 0.25 * std::max(box.width, box.height));
+  // What passes near by has a box of any size, of which the frame is what can be seen.
+  const double seen_px = std::min(std::max(box.width, box.height),
+                                  static_cast<double>(std::max(lens.width, lens.height)));
+  const double margin = std::max(4.0, 0.25 * seen_px);
   const double x0 = std::max(box.x, -8.0) - margin;
   const double y0 = std::max(box.y, -8.0) - margin;
   const double x1 = std::min(box.right(), lens.width + 8.0) + margin;

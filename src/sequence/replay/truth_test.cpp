@@ -224,6 +224,16 @@ TEST_F(TruthOf, ATruthOfAnotherLengthThanItsVideoIsRefused) {
               testing::HasSubstr("holds 8 frames; expected 9, one for each line of truth.jsonl"));
 }
 
+// Three panels, each of the frame and a margin of at most a quarter of it on both sides.
+TEST_F(TruthOf, WhatPassesNearByIsShownInTheFrame) {
+  Finished finished = rendered(
+      replayed_intruder("one", "c172/news", "[[100, -20, -150], [100, 20, -150]]"), kStill);
+  finished.truth.frames[3].intruders[0].exact_box_px = Box{-2000, -2000, 4000, 4000};
+  const image::Rgb8 shown = inspect(finished, 3, "", 1);
+  EXPECT_GT(shown.width, 3 * kReplayWidth);
+  EXPECT_LT(shown.width, 6 * kReplayWidth);
+}
+
 // The same frames in another file.
 TEST_F(TruthOf, ABackgroundThatIsAnotherFileIsNotShown) {
   const Finished finished = rendered(
