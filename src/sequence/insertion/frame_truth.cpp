@@ -137,6 +137,8 @@ annotation::Intruder mark_truth(const setup::World& world,
   if (!spot) return truth;
   const lens::ImageSize size = world.lens.size();
   truth.exact_box_px = projection::spot_box(*spot, moment.sight.shutter, size.width, size.height);
+  // Nothing is drawn where all lie wholly beyond the frame.
+  if (!setup::meets_frame(*truth.exact_box_px, size)) truth.cut_by_frame = 1;
   const std::size_t i = world.actors.size() + mark;
   const bool drawn = i < layer.areas.size() && layer.areas[i].alone_in_frame_px > 0;
   if (drawn) truth.state = State::kHidden;

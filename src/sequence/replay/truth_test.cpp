@@ -131,6 +131,21 @@ TEST_F(TruthOf, WhatHidesAnIntruderDoesNotDependOnThePointSpread) {
   EXPECT_GT(by_nothing, 0);
 }
 
+// An insect alone, 40 px farther to the right in each frame.
+TEST_F(TruthOf, WhatIsOnTheLensAndWhollyBeyondTheFrameIsCut) {
+  const Finished finished = rendered(
+      "[[distractor]]\nkind = \"insect\"\npixel = [80, 60]\nvelocity_px_s = [1200, 0]\n", kStill);
+  int beyond = 0;
+  for (const annotation::Frame& frame : finished.truth.frames) {
+    const annotation::Intruder& insect = frame.intruders[0];
+    const bool is_beyond = insect.exact_box_px->x >= kReplayWidth;
+    EXPECT_EQ(insect.cut_by_frame == 1, is_beyond) << frame.frame;
+    beyond += is_beyond ? 1 : 0;
+  }
+  EXPECT_GT(beyond, 0);
+  EXPECT_LT(beyond, kReplayFrames);
+}
+
 // The flight's own pose gives the expected value: a direction of the first frame's camera, rotated
 // as the camera truly rotated until frame k. The scene's camera stands still, so nominal bearings
 // stay.
