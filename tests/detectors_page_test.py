@@ -56,7 +56,7 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
     send(id('frame'), 'input');
     await wait(100);
     out.pairs.push(pair());
-    if (value === 30) out.at_30 = cells();
+    if (value === 30) [out.at_30, out.caption] = [cells(), id('caption').textContent];
     if (value === 9) out.at_9 = cells();
   }
   const strip = id('strip').getBoundingClientRect();
@@ -104,12 +104,15 @@ DATA = r'(?s)(?<=<script type="application/json" id="data">).*?(?=</script>)'
 
 
 def declare_late(file_name):
-    """Has the page say that the finder declares the aircraft 3 s after the closest approach, of which the clip states nothing."""
+    """Has the page say that the finder declares the aircraft 3 s after the closest approach, of which the clip states nothing,
+    and that each picture is of that time."""
     with open(file_name, encoding="utf-8") as file:
         text = file.read()
     data = json.loads(re.search(DATA, text).group())
     finder = next(one for one in data["detectors"] if one["name"] == "finder")
     finder["tracks"]["encounters"][0]["declaration"]["to_closest_approach_s"] = -3
+    for still in data["sequences"][0]["stills"]:
+        still["objects"][0]["to_closest_s"] = -3
     with open(file_name, "w", encoding="utf-8") as file:
         file.write(re.sub(DATA, lambda _: json.dumps(data).replace("<", "\\u003c"), text))
 
@@ -146,6 +149,7 @@ def main():
             expect("detectors with tracks", out["tracks"], ["finder"])
             expect("not drawn", out["undrawn"], [])
             expect("declared after the closest approach", ", 3 s after the closest approach" in out["facts"], True)
+            expect("seen after the closest approach", ", 3 s after the closest approach" in out["caption"], True)
             expect("plots by range, which nothing is known of", [p for p in out["plots"] if "range" in p or "closest" in p], [])
             expect("plots", {"precision", "froc", "by_size_px", "by_contrast_to_noise", "false_alarms"} - set(out["plots"]), set())
             expect("says that ranges are unknown", any("range" in text for text in out["left_out"]), True)

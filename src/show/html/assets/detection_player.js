@@ -83,7 +83,7 @@ airtruth.detectionPlayer = (data) => {
     for (const object of aircraft) {
       const facts = [`${number(object.box[2])} × ${number(object.box[3])} px`];
       if (object.range_m !== null) facts.push(`${number(object.range_m)} m`);
-      if (object.to_closest_s !== null) facts.push(`${number(object.to_closest_s, 1)} s to closest approach`);
+      if (object.to_closest_s !== null) facts.push(aroundClosest(object.to_closest_s));
       if (object.cnr !== null) facts.push(`contrast to noise ${number(object.cnr, 1)}`);
       parts.push(facts.join(', '));
     }
