@@ -149,16 +149,6 @@ AIRTRUTH_FOR_VECTORS void take_every_fourth(const std::uint8_t* source,
   for (int x = 0; x < count; ++x) target[x] = source[4 * x];
 }
 
-AIRTRUTH_FOR_VECTORS void mark_light_by_vectors(const std::uint8_t* red,
-                                                const std::uint8_t* green,
-                                                const std::uint8_t* blue,
-                                                int least,
-                                                int count,
-                                                std::uint8_t* target) {
-  for (int x = 0; x < count; ++x)
-    target[x] = (red[x] + 2 * green[x] + blue[x]) / 4 >= least ? 255 : 0;
-}
-
 AIRTRUTH_FOR_VECTORS void luma_of_rgb_by_vectors(const std::uint8_t* red,
                                                  const std::uint8_t* green,
                                                  const std::uint8_t* blue,
@@ -169,20 +159,11 @@ AIRTRUTH_FOR_VECTORS void luma_of_rgb_by_vectors(const std::uint8_t* red,
 
 }  // namespace
 
+// Functions with several variants are private: GCC exports their names whatever their visibility.
 void take_every(const std::uint8_t* source, int step, int count, std::uint8_t* target) {
   if (step == 3) return take_every_third(source, count, target);
   if (step == 4) return take_every_fourth(source, count, target);
   for (int x = 0; x < count; ++x) target[x] = source[x * step];
-}
-
-// Functions with several variants are private: GCC exports their names whatever their visibility.
-void mark_light(const std::uint8_t* red,
-                const std::uint8_t* green,
-                const std::uint8_t* blue,
-                int least,
-                int count,
-                std::uint8_t* target) {
-  mark_light_by_vectors(red, green, blue, least, count, target);
 }
 
 void copy_luma(const Picture& picture, int x, int y, int count, std::uint8_t* target) {

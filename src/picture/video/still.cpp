@@ -2,11 +2,9 @@
 #include "picture/video/still.h"
 
 #include <algorithm>
-#include <array>
 #include <new>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
@@ -120,24 +118,6 @@ bool is_jpeg(const fs::path& path) {
 // A pixel of a mask's picture is free from this luma on.
 constexpr int kLight = 128;
 
-// R'G'B' is read where it lies: its planes are G, B and R. Other pictures are converted.
-void fill_mask(const image::Picture& picture, image::Mask& mask) {
-  const bool is_rgb = picture.colour.matrix == image::Matrix::kRgb;
-  const image::Rgb8 packed = is_rgb ? image::Rgb8{} : image::rgb8_from_picture(picture);
-  const auto width = static_cast<std::size_t>(picture.width);
-  std::array<std::vector<std::uint8_t>, 3> components;  // of a row
-  for (auto& component : components) component.resize(is_rgb ? 0 : width);
-  for (int y = 0; y < picture.height; ++y) {
-    auto* row = &mask.free[static_cast<std::size_t>(y) * width];
-    const std::uint8_t* green = is_rgb ? picture.planes[0].row(y) : components[1].data();
-    const std::uint8_t* blue = is_rgb ? picture.planes[1].row(y) : components[2].data();
-    const std::uint8_t* red = is_rgb ? picture.planes[2].row(y) : components[0].data();
-    for (std::size_t c = 0; c < 3 && !is_rgb; ++c)
-      image::take_every(packed.at(0, y) + c, 3, picture.width, components[c].data());
-    image::mark_light(red, green, blue, kLight, picture.width, row);
-  }
-}
-
 image::Picture first_picture(const fs::path& path) {
   std::error_code unknown;
   if (!fs::exists(path, unknown))
@@ -219,7 +199,11 @@ image::Mask read_mask(const fs::path& path, int width, int height) {
   mask.width = width;
   mask.height = height;
   mask.free.resize(pixels_in(width, height));
-  fill_mask(picture, mask);
+  const image::Rgb8 rgb = image::rgb8_from_picture(picture);
+  for (std::size_t i = 0; i < mask.free.size(); ++i) {
+    const std::uint8_t* code = &rgb.samples[3 * i];
+    mask.free[i] = (code[0] + 2 * code[1] + code[2]) / 4 >= kLight ? 255 : 0;
+  }
   const bool any = std::any_of(mask.free.begin(), mask.free.end(), [](auto v) { return v != 0; });
   if (!any)
     throw Error(

@@ -54,10 +54,15 @@ TEST_F(Video, StillsAndMasks) {
   EXPECT_THROW(read_mask(folder_ / "black.png", 8, 8), Error);
   image::Rgb8 half = image::make_rgb8(8, 8);
   std::fill_n(half.samples.get(), 8 * 4 * 3, std::uint8_t{255});
+  // (red + 2 green + blue) / 4 of these is 127 and 128.
+  half.at(0, 0)[0] = 1, half.at(1, 0)[0] = 2;
+  half.at(0, 0)[2] = half.at(1, 0)[2] = 0;
   write_still(folder_ / "half.png", half);
   const image::Mask mask = read_mask(folder_ / "half.png", 8, 8);
   EXPECT_TRUE(mask.is_free(3, 3));
   EXPECT_FALSE(mask.is_free(3, 4));
+  EXPECT_FALSE(mask.is_free(0, 0));
+  EXPECT_TRUE(mask.is_free(1, 0));
 }
 
 // Largest difference between two sets of samples; 256 where their sizes differ.
