@@ -100,30 +100,12 @@ template <typename T>
 struct ObjectFor {
   using Type = py::object;
 };
-template <typename Result, typename... Arguments>
-class Named {
- public:
-  using Names = std::array<const char*, sizeof...(Arguments)>;
-  Named(Result (*function)(Arguments...), const Names& names)
-      : function_(function), names_(names) {}
-  Result operator()(const typename ObjectFor<Arguments>::Type&... values) const {
-    return call(std::index_sequence_for<Arguments...>(), values...);
-  }
-
- private:
-  template <std::size_t... I>
-  Result call(std::index_sequence<I...>,
-              const typename ObjectFor<Arguments>::Type&... values) const {
-    return function_(argument<std::remove_cvref_t<Arguments>>(values, names_[I])...);
-  }
-
-  Result (*function_)(Arguments...);
-  Names names_;
-};
 template <typename Result, typename... Arguments, typename... Name>
-Named<Result, Arguments...> named(Result (*function)(Arguments...), Name... names) {
+auto named(Result (*function)(Arguments...), Name... names) {
   static_assert(sizeof...(Arguments) == sizeof...(Name), "each argument has a name");
-  return {function, {names...}};
+  return [=](const typename ObjectFor<Arguments>::Type&... values) {
+    return function(argument<std::remove_cvref_t<Arguments>>(values, names)...);
+  };
 }
 
 // A text of the library, whose bytes need not be UTF-8 (names of files).
