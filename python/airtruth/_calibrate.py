@@ -93,7 +93,10 @@ def calibrate(
     several = [videos] if isinstance(videos, (str, bytes, os.PathLike)) else videos
     paths = [os.fspath(video) for video in several]
     with shown("measuring", progress) as tell:
-        fields = _core.calibrate(paths, os.fspath(lens or ""), os.fspath(mask or ""), altitude_m, heading_deg, gamma, profile, frame_rate_hz, tell)
+        fields = _core.calibrate(
+            videos=paths, lens=os.fspath(lens or ""), mask=os.fspath(mask or ""), altitude_m=altitude_m, heading_deg=heading_deg, gamma=gamma,
+            profile=profile, frame_rate_hz=frame_rate_hz, progress=tell,
+        )
     quantities: Dict[str, Dict[str, Measured]] = {}
     for name, quantity in fields["quantities"].items():
         table, key = name.split(".")

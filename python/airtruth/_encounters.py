@@ -85,9 +85,11 @@ def sample_encounters(
     >>> np.hypot(flown[:, 0], flown[:, 1]).round(6)[:3]
     array([60., 60., 60.])
     """
-    ranges = [_list(one) for one in (altitude_ft, hmd_m, hmd_shares, vmd_m, vmd_shares, course_deg, speed_mps, climb_mps, turn_rate_dps)]
     with shown("drawing", progress) as tell:
         fields = _core.sample_encounters(
-            os.fspath(model), os.fspath(own or ""), count, seed, duration_s, _list(domain), _list(airspace), cpa_time_s, ranges, jobs, tell
+            model=os.fspath(model), own=os.fspath(own or ""), count=count, seed=seed, duration_s=duration_s, domain=_list(domain),
+            airspace=_list(airspace), altitude_ft=_list(altitude_ft), cpa_time_s=cpa_time_s, hmd_m=_list(hmd_m), hmd_shares=_list(hmd_shares),
+            vmd_m=_list(vmd_m), vmd_shares=_list(vmd_shares), course_deg=_list(course_deg), speed_mps=_list(speed_mps),
+            climb_mps=_list(climb_mps), turn_rate_dps=_list(turn_rate_dps), jobs=jobs, progress=tell,
         )
     return Encounters(**fields)

@@ -70,7 +70,8 @@ def motion(
     """
     with shown("measuring", progress) as tell:
         fields = _core.motion(
-            os.fspath(video), model, os.fspath(lens or ""), os.fspath(mask or ""), reference, smoothing_s, frame_rate_hz, cache_of(cache), tell
+            video=os.fspath(video), model=model, lens=os.fspath(lens or ""), mask=os.fspath(mask or ""), reference=reference,
+            smoothing_s=smoothing_s, frame_rate_hz=frame_rate_hz, cache=cache_of(cache), progress=tell,
         )
     fields["lens"] = fields["lens"] and Lens(fields["lens"])
     fields["gyro"] = fields["gyro"] and GyroAgreement(**fields["gyro"])

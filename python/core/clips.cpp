@@ -12,181 +12,109 @@ namespace airtruth::python {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace py::literals;
 
 py::object gyro_dict(const std::optional<GyroAgreement>& gyro) {
   if (!gyro) return py::none();
-  py::dict dict;
-  const IntoDict into{dict};
-  into("correlation", gyro->correlation);
-  into("offset_s", gyro->offset_s);
-  into("rms_dps", gyro->rms_dps);
-  return dict;
+  return py::dict("correlation"_a = gyro->correlation,
+                  "offset_s"_a = gyro->offset_s,
+                  "rms_dps"_a = gyro->rms_dps);
 }
 
-// A value of each row as a column.
-template <typename Row, typename Value>
-py::array column(const std::vector<Row>& rows, Value value) {
-  std::vector<decltype(value(rows[0]))> values;
-  for (const Row& row : rows) values.push_back(value(row));
-  const py::ssize_t count = std::ssize(values);
-  return array_of(std::move(values), {count});
-}
-
-// The same of values of N numbers; `shape`: of one.
-template <std::size_t N, typename Value>
-py::array rows(const std::vector<FrameMotion>& frames,
-               std::vector<py::ssize_t> shape,
-               Value value) {
-  std::vector<double> values;
-  for (const FrameMotion& frame : frames) {
-    const std::array<double, N>& row = value(frame);
-    values.insert(values.end(), row.begin(), row.end());
-  }
-  shape.insert(shape.begin(), std::ssize(frames));
-  return array_of(std::move(values), shape);
-}
-
-py::dict motion(const fs::path& video,
-                const std::string& model,
-                const fs::path& lens,
-                const fs::path& mask,
-                const std::string& reference,
-                double smoothing_s,
-                std::optional<double> frame_rate_hz,
-                const py::object& cache,
-                const py::object& progress) {
+py::dict motion(const py::kwargs& given) {
   MotionOptions options;
-  options.model = model;
-  options.lens = lens;
-  options.mask = mask;
-  options.reference = reference;
-  options.smoothing_s = smoothing_s;
-  options.frame_rate_hz = frame_rate_hz;
-  take_cache(cache, options);
+  const FromKeywords take{given};
+  fs::path video;
+  take("video", video);
+  take("model", options.model);
+  take("lens", options.lens);
+  take("mask", options.mask);
+  take("reference", options.reference);
+  take("smoothing_s", options.smoothing_s);
+  take("frame_rate_hz", options.frame_rate_hz);
+  take_cache(given["cache"], options);
   const ClipMotion found = stoppable(
-      options, [&](const MotionOptions& o) { return measure_motion(video, o); }, progress);
+      options, [&](const MotionOptions& o) { return measure_motion(video, o); }, given["progress"]);
   const std::vector<FrameMotion>& frames = found.frames;
-  py::dict dict;
-  const IntoDict into{dict};
-  into("width", found.width);
-  into("height", found.height);
-  dict["lens"] = found.lens;
-  dict["frame"] = column(frames, [](const FrameMotion& f) { return f.frame; });
-  dict["time_s"] = column(frames, [](const FrameMotion& f) { return f.time_s; });
-  dict["frame_from_reference"] =
-      rows<9>(frames, {3, 3}, [](const FrameMotion& f) { return f.frame_from_reference; });
-  dict["cam_from_reference_cam"] =
-      found.lens ? py::object(rows<4>(
-                       frames, {4}, [](const FrameMotion& f) { return *f.cam_from_reference_cam; }))
-                 : py::none();
-  dict["inliers"] = column(frames, [](const FrameMotion& f) { return f.inliers; });
-  dict["rms_px"] = column(frames, [](const FrameMotion& f) { return f.rms_px; });
-  py::list states;
-  for (const FrameMotion& frame : frames) states.append(frame.state);
-  dict["state"] = states;
-  dict["gyro"] = gyro_dict(found.gyro);
-  return dict;
+  const auto rotation = [](const FrameMotion& frame) { return *frame.cam_from_reference_cam; };
+  return py::dict("width"_a = found.width,
+                  "height"_a = found.height,
+                  "lens"_a = found.lens,
+                  "frame"_a = column(frames, &FrameMotion::frame),
+                  "time_s"_a = column(frames, &FrameMotion::time_s),
+                  "frame_from_reference"_a =
+                      column(frames, &FrameMotion::frame_from_reference).attr("reshape")(-1, 3, 3),
+                  "cam_from_reference_cam"_a = found.lens ? column(frames, rotation) : py::none(),
+                  "inliers"_a = column(frames, &FrameMotion::inliers),
+                  "rms_px"_a = column(frames, &FrameMotion::rms_px),
+                  "state"_a = column(frames, &FrameMotion::state),
+                  "gyro"_a = gyro_dict(found.gyro));
 }
 
 // One number of each estimate: a number, an array of three, or None.
 py::object numbers_of(const std::vector<Estimate>& estimates, double Estimate::*number) {
   if (estimates.empty()) return py::none();
   if (estimates.size() == 1) return py::float_(estimates[0].*number);
-  return column(estimates, [=](const Estimate& estimate) { return estimate.*number; });
+  return column(estimates, number);
 }
 
 py::dict quantity_dict(const CalibratedQuantity& quantity) {
-  py::dict dict;
-  const IntoDict into{dict};
-  dict["value"] = numbers_of(quantity.values, &Estimate::value);
-  dict["sigma"] = numbers_of(quantity.values, &Estimate::sigma);
-  into("missing", quantity.missing);
-  into("note", quantity.note);
-  into("source", quantity.source);
-  into("doubt", quantity.doubt);
-  return dict;
+  return py::dict("value"_a = numbers_of(quantity.values, &Estimate::value),
+                  "sigma"_a = numbers_of(quantity.values, &Estimate::sigma),
+                  "missing"_a = text(quantity.missing),
+                  "note"_a = text(quantity.note),
+                  "source"_a = text(quantity.source),
+                  "doubt"_a = text(quantity.doubt));
 }
 
-py::dict calibration(const std::vector<fs::path>& videos,
-                     const fs::path& lens,
-                     const fs::path& mask,
-                     std::optional<double> altitude_m,
-                     double heading_deg,
-                     double gamma,
-                     const std::string& profile,
-                     std::optional<double> frame_rate_hz,
-                     const py::object& progress) {
+py::dict calibration(const py::kwargs& given) {
   CalibrateOptions options;
-  options.lens = lens;
-  options.mask = mask;
-  options.altitude_m = altitude_m;
-  options.heading_deg = heading_deg;
-  options.gamma = gamma;
-  options.profile = profile;
-  options.frame_rate_hz = frame_rate_hz;
+  const FromKeywords take{given};
+  std::vector<fs::path> videos;
+  take("videos", videos);
+  take("lens", options.lens);
+  take("mask", options.mask);
+  take("altitude_m", options.altitude_m);
+  take("heading_deg", options.heading_deg);
+  take("gamma", options.gamma);
+  take("profile", options.profile);
+  take("frame_rate_hz", options.frame_rate_hz);
   const Calibration found = stoppable(
-      options, [&](const CalibrateOptions& o) { return calibrate(videos, o); }, progress);
+      options, [&](const CalibrateOptions& o) { return calibrate(videos, o); }, given["progress"]);
   py::dict quantities;
   for (const CalibratedQuantity& quantity : found.quantities)
     quantities[text(quantity.name)] = quantity_dict(quantity);
-  py::dict dict;
-  const IntoDict into{dict};
-  into("width", found.width);
-  into("height", found.height);
-  into("frame_rate_hz", found.frame_rate_hz);
-  into("frames", found.frames);
-  into("clips", found.clips);
-  dict["quantities"] = quantities;
-  into("readout_direction", found.readout_direction);
-  dict["horizon_frame"] = column(found.horizons, [](const auto& h) { return h.frame; });
-  dict["horizon_pitch_deg"] = column(found.horizons, [](const auto& h) { return h.pitch_deg; });
-  dict["horizon_roll_deg"] = column(found.horizons, [](const auto& h) { return h.roll_deg; });
-  into("no_horizon", found.no_horizon);
-  into("horizon_note", found.horizon_note);
-  into("toml", found.toml);
-  return dict;
+  return py::dict("width"_a = found.width,
+                  "height"_a = found.height,
+                  "frame_rate_hz"_a = found.frame_rate_hz,
+                  "frames"_a = found.frames,
+                  "clips"_a = found.clips,
+                  "quantities"_a = quantities,
+                  "readout_direction"_a = text(found.readout_direction),
+                  "horizon_frame"_a = column(found.horizons, &HorizonAttitude::frame),
+                  "horizon_pitch_deg"_a = column(found.horizons, &HorizonAttitude::pitch_deg),
+                  "horizon_roll_deg"_a = column(found.horizons, &HorizonAttitude::roll_deg),
+                  "no_horizon"_a = text(found.no_horizon),
+                  "horizon_note"_a = text(found.horizon_note),
+                  "toml"_a = text(found.toml));
 }
 
 py::list profiles() {
   py::list all;
-  for (const CameraProfile& profile : camera_profiles()) {
-    py::dict dict;
-    const IntoDict into{dict};
-    into("name", profile.name);
-    into("camera", profile.camera);
-    into("width", profile.width);
-    into("height", profile.height);
-    into("clips", profile.clips);
-    all.append(dict);
-  }
+  for (const CameraProfile& profile : camera_profiles())
+    all.append(py::dict("name"_a = text(profile.name),
+                        "camera"_a = text(profile.camera),
+                        "width"_a = profile.width,
+                        "height"_a = profile.height,
+                        "clips"_a = profile.clips));
   return all;
 }
 
 }  // namespace
 
 void bind_clips(py::module_& core) {
-  core.def("motion",
-           named(&motion,
-                 "video",
-                 "model",
-                 "lens",
-                 "mask",
-                 "reference",
-                 "smoothing_s",
-                 "frame_rate_hz",
-                 "cache",
-                 "progress"));
-  core.def("calibrate",
-           named(&calibration,
-                 "videos",
-                 "lens",
-                 "mask",
-                 "altitude_m",
-                 "heading_deg",
-                 "gamma",
-                 "profile",
-                 "frame_rate_hz",
-                 "progress"));
+  core.def("motion", &motion);
+  core.def("calibrate", &calibration);
   core.def("camera_profiles", &profiles);
 }
 

@@ -16,6 +16,7 @@ namespace airtruth::python {
 namespace {
 
 using namespace evaluation;
+using namespace py::literals;
 
 // The number of a track; empty for NaN.
 std::optional<std::int64_t> track_of(double number, const char* what) {
@@ -51,36 +52,14 @@ struct Counting {
   }
 };
 
-// What one image holds, as `Image` reads it from a tuple; signals are seen.
-template <typename Image>
-auto sequences_of(const py::list& sequences, const Image& image_of) {
-  std::vector<std::vector<decltype(image_of(py::handle()))>> result;
-  for (const py::handle& sequence : sequences) {
-    result.emplace_back();
-    for (const py::handle& image : sequence.cast<py::list>()) {
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      result.back().push_back(image_of(image));
-    }
-  }
-  return result;
-}
-
 // Seconds of a sequence; 0: unknown.
 double duration_s(std::size_t images, std::optional<double> rate_hz) {
   return rate_hz ? static_cast<double>(images) / *rate_hz : 0;
 }
 
-std::optional<double> checked_rate(std::optional<double> rate_hz) {
+void checked_rate(std::optional<double> rate_hz) {
   if (rate_hz && !(*rate_hz > 0 && std::isfinite(*rate_hz)))
     throw py::value_error("rate_hz is no finite number above 0");
-  return rate_hz;
-}
-
-template <typename Value>
-py::array column(const std::vector<FrocPoint>& points, Value value) {
-  std::vector<double> values;
-  for (const FrocPoint& point : points) values.push_back(value(point));
-  return array_of(std::move(values), {std::ssize(points)});
 }
 
 py::dict froc_dict(const py::list& sequences, std::optional<double> rate_hz, double centre_px) {
@@ -93,29 +72,24 @@ py::dict froc_dict(const py::list& sequences, std::optional<double> rate_hz, dou
       matched.push_back(froc_sequence(sequence, duration_s(sequence.size(), rate_hz), centre_px));
     return froc_of(matched);
   });
-  const auto& points = froc.points;
-  py::dict dict;
-  const IntoDict into{dict};
-  const auto share = [&](double Proportion::*of) -> py::object {
-    if (froc.aircraft == 0) return py::none();
-    return column(points, [&](const auto& p) { return p.detection.*of; });
+  const std::vector<FrocPoint>& points = froc.points;
+  const auto share = [&](double Proportion::*of) {
+    return froc.aircraft == 0
+               ? py::none()
+               : column(points, [&](const FrocPoint& point) { return point.detection.*of; });
   };
-  dict["score"] = column(points, [](const auto& p) { return p.score; });
-  dict["detection"] = share(&Proportion::value);
-  dict["detection_low"] = share(&Proportion::low);
-  dict["detection_high"] = share(&Proportion::high);
-  dict["false_alarms_per_image"] =
-      column(points, [](const auto& p) { return p.false_alarms_per_image; });
-  dict["false_alarms_per_hour"] =
-      rate_hz ? py::object(column(points, [](const auto& p) { return p.false_alarms_per_hour; }))
-              : py::none();
-  dict["false_alarms_per_flight"] =
-      column(points, [](const auto& p) { return p.false_alarms_per_flight; });
-  into("images", froc.images);
-  into("flights", froc.flights);
-  into("hours", rate_hz ? std::optional(froc.hours) : std::nullopt);
-  into("aircraft", froc.aircraft);
-  return dict;
+  return py::dict("score"_a = column(points, &FrocPoint::score),
+                  "detection"_a = share(&Proportion::value),
+                  "detection_low"_a = share(&Proportion::low),
+                  "detection_high"_a = share(&Proportion::high),
+                  "false_alarms_per_image"_a = column(points, &FrocPoint::false_alarms_per_image),
+                  "false_alarms_per_hour"_a =
+                      rate_hz ? column(points, &FrocPoint::false_alarms_per_hour) : py::none(),
+                  "false_alarms_per_flight"_a = column(points, &FrocPoint::false_alarms_per_flight),
+                  "images"_a = froc.images,
+                  "flights"_a = froc.flights,
+                  "hours"_a = rate_hz ? std::optional(froc.hours) : std::nullopt,
+                  "aircraft"_a = froc.aircraft);
 }
 
 // Boxes with the numbers of their tracks; those without one are left out.
@@ -210,24 +184,22 @@ AotFrame aot_frame_of(const py::handle& item, double centre_px) {
   return frame;
 }
 
+py::tuple rate_tuple(const AotRate& rate) {
+  return py::make_tuple(
+      rate.detected, rate.total, rate.total > 0 ? std::optional(rate.rate()) : std::nullopt);
+}
+
 py::dict aot_dict(const AotScore& score, bool has_images, bool has_rate) {
-  py::dict dict;
-  const IntoDict into{dict};
-  into("score", score.score);
-  const auto rate = [&](const char* name, const AotRate& of) {
-    dict[name] = py::make_tuple(
-        of.detected, of.total, of.total > 0 ? std::optional(of.rate()) : std::nullopt);
-  };
-  rate("edr", score.edr_all);
-  rate("edr_below_horizon", score.edr_below);
-  rate("edr_mixed", score.edr_mixed);
-  rate("edr_above_horizon", score.edr_above);
-  rate("edr_by_frames", score.edr_frames_all);
-  rate("afdr", score.afdr);
-  into("max_range_m", score.max_range_m);
-  into("hfar", has_images && has_rate ? std::optional(score.hfar) : std::nullopt);
-  into("fppi", has_images ? std::optional(score.fppi) : std::nullopt);
-  return dict;
+  return py::dict("score"_a = score.score,
+                  "edr"_a = rate_tuple(score.edr_all),
+                  "edr_below_horizon"_a = rate_tuple(score.edr_below),
+                  "edr_mixed"_a = rate_tuple(score.edr_mixed),
+                  "edr_above_horizon"_a = rate_tuple(score.edr_above),
+                  "edr_by_frames"_a = rate_tuple(score.edr_frames_all),
+                  "afdr"_a = rate_tuple(score.afdr),
+                  "max_range_m"_a = score.max_range_m,
+                  "hfar"_a = has_images && has_rate ? std::optional(score.hfar) : std::nullopt,
+                  "fppi"_a = has_images ? std::optional(score.fppi) : std::nullopt);
 }
 
 struct AotInputs {

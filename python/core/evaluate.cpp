@@ -17,6 +17,7 @@ namespace airtruth::python {
 namespace {
 
 using namespace evaluation;
+using namespace py::literals;
 
 using TwoWhole = std::pair<py::object, py::object>;
 using Size = std::optional<TwoWhole>;
@@ -97,15 +98,14 @@ py::dict mean(const py::list& scores) {
   return score_dict(mean_of(values));
 }
 
-py::array overlaps(const py::object& a, const py::object& b) {
+py::object overlaps(const py::object& a, const py::object& b) {
   const auto first = boxes_of(a, "a");
   const auto second = boxes_of(b, "b");
   expect_equal(first.size(), second.size(), "a and b");
   std::vector<double> values;
   for (std::size_t i = 0; i < first.size(); ++i)
     values.push_back(first[i] && second[i] ? overlap(*first[i], *second[i]) : 0);
-  const py::ssize_t count = std::ssize(values);
-  return array_of(std::move(values), {count});
+  return python_of(std::move(values));
 }
 
 py::object interval_tuple(const std::optional<Interval>& interval) {
@@ -128,15 +128,12 @@ py::dict paired_dict(const py::object& a, const py::object& b) {
   const std::vector<double> second = finite_list_of(b, "b");
   expect_equal(first.size(), second.size(), "a and b");
   const Paired result = left_alone([=] { return paired(first, second); });
-  py::dict dict;
-  const IntoDict into{dict};
-  into("difference", first.empty() ? std::nullopt : std::optional(result.difference));
-  dict["interval"] = interval_tuple(result.interval);
-  into("p_value", result.p_value);
-  into("wins", result.wins);
-  into("losses", result.losses);
-  into("ties", result.ties);
-  return dict;
+  return py::dict("difference"_a = first.empty() ? std::nullopt : std::optional(result.difference),
+                  "interval"_a = interval_tuple(result.interval),
+                  "p_value"_a = result.p_value,
+                  "wins"_a = result.wins,
+                  "losses"_a = result.losses,
+                  "ties"_a = result.ties);
 }
 
 std::optional<double> tau(const py::object& a, const py::object& b) {
@@ -148,47 +145,37 @@ std::optional<double> tau(const py::object& a, const py::object& b) {
 
 py::object curve_dict(const std::optional<PrecisionCurve>& curve) {
   if (!curve) return py::none();
-  py::dict dict;
-  const IntoDict into{dict};
-  into("precision", curve->precision);
-  into("score", curve->score);
-  into("average_precision", curve->average_precision);
-  into("recall", curve->recall);
-  into("truths", curve->truths);
-  return dict;
+  return py::dict("precision"_a = python_of(curve->precision),
+                  "score"_a = python_of(curve->score),
+                  "average_precision"_a = curve->average_precision,
+                  "recall"_a = curve->recall,
+                  "truths"_a = curve->truths);
 }
 
 // `sequences`: the images of each.
 py::dict precision_dict(const py::list& sequences, double centre_px) {
   checked_centre(centre_px);
-  std::vector<std::vector<ScoredImage>> images;
-  for (const py::handle& sequence : sequences) {
-    images.emplace_back();
-    for (const py::handle& image : sequence.cast<py::list>())
-      images.back().push_back(scored_image_of(image));
-  }
-  const AveragePrecision ap = left_alone(
-      [images = std::move(images), centre_px] { return average_precision(images, centre_px); });
-  py::dict dict;
-  const IntoDict into{dict};
-  into("ap", ap.ap);
-  into("ap_50", ap.ap_50);
-  into("ap_75", ap.ap_75);
-  into("ap_small", ap.ap_small);
-  into("ap_medium", ap.ap_medium);
-  into("ap_large", ap.ap_large);
-  into("ar_1", ap.ar_1);
-  into("ar_10", ap.ar_10);
-  into("ar_100", ap.ar_100);
-  into("ar_small", ap.ar_small);
-  into("ar_medium", ap.ar_medium);
-  into("ar_large", ap.ar_large);
-  into("ap_centre", ap.ap_centre);
-  dict["ap_50_interval"] = interval_tuple(ap.ap_50_interval);
-  dict["ap_centre_interval"] = interval_tuple(ap.ap_centre_interval);
-  dict["curve_50"] = curve_dict(ap.curve_50);
-  dict["curve_centre"] = curve_dict(ap.curve_centre);
-  return dict;
+  const AveragePrecision ap =
+      left_alone([images = sequences_of(sequences, &scored_image_of), centre_px] {
+        return average_precision(images, centre_px);
+      });
+  return py::dict("ap"_a = ap.ap,
+                  "ap_50"_a = ap.ap_50,
+                  "ap_75"_a = ap.ap_75,
+                  "ap_small"_a = ap.ap_small,
+                  "ap_medium"_a = ap.ap_medium,
+                  "ap_large"_a = ap.ap_large,
+                  "ar_1"_a = ap.ar_1,
+                  "ar_10"_a = ap.ar_10,
+                  "ar_100"_a = ap.ar_100,
+                  "ar_small"_a = ap.ar_small,
+                  "ar_medium"_a = ap.ar_medium,
+                  "ar_large"_a = ap.ar_large,
+                  "ap_centre"_a = ap.ap_centre,
+                  "ap_50_interval"_a = interval_tuple(ap.ap_50_interval),
+                  "ap_centre_interval"_a = interval_tuple(ap.ap_centre_interval),
+                  "curve_50"_a = curve_dict(ap.curve_50),
+                  "curve_centre"_a = curve_dict(ap.curve_centre));
 }
 
 VotTruth vot_truth(const py::object& truth, const Size& size) {
@@ -269,27 +256,21 @@ py::dict restart_dict(const py::iterable& sequences, const TwoWhole& range) {
   const std::vector<RestartRuns> runs = restart_runs(sequences);
   const Restart result =
       left_alone([runs, to = range_of(range)] { return restart_score(runs, to); });
-  py::dict dict;
-  const IntoDict into{dict};
-  into("accuracy", over(runs, result.accuracy));
-  into("failures", over(runs, result.failures));
-  into("reliability", over(runs, result.reliability));
-  into("eao", result.eao);
-  into("eao_curve", result.eao_curve);
-  return dict;
+  return py::dict("accuracy"_a = over(runs, result.accuracy),
+                  "failures"_a = over(runs, result.failures),
+                  "reliability"_a = over(runs, result.reliability),
+                  "eao"_a = result.eao,
+                  "eao_curve"_a = python_of(result.eao_curve));
 }
 
 py::dict multistart_dict(const py::iterable& sequences, const TwoWhole& range) {
   const std::vector<MultiStartRuns> runs = multistart_runs(sequences);
   const MultiStart result =
       left_alone([runs, to = range_of(range)] { return multistart_score(runs, to); });
-  py::dict dict;
-  const IntoDict into{dict};
-  into("accuracy", over(runs, result.accuracy));
-  into("robustness", over(runs, result.robustness));
-  into("eao", result.eao);
-  into("eao_curve", result.eao_curve);
-  return dict;
+  return py::dict("accuracy"_a = over(runs, result.accuracy),
+                  "robustness"_a = over(runs, result.robustness),
+                  "eao"_a = result.eao,
+                  "eao_curve"_a = python_of(result.eao_curve));
 }
 
 py::list anchors(const py::object& truth, const py::object& step) {
@@ -341,7 +322,6 @@ std::vector<LabelledBox> labelled_boxes(const std::vector<std::optional<Box>>& t
 }
 
 evaluation::ScoredImage scored_image_of(const py::handle& item) {
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   const auto [truth, ignored, regions, detections, scores] =
       item.cast<std::tuple<py::object, py::object, py::object, py::object, py::object>>();
   ScoredImage image{labelled_boxes(boxes_of(truth, "truth"), ignored, regions), {}};

@@ -33,6 +33,20 @@ std::vector<evaluation::LabelledBox> labelled_boxes(const std::vector<std::optio
                                                     const pybind11::handle& ignored,
                                                     const pybind11::handle& regions);
 
+// The images of each sequence, as image_of() reads one of them; signals are seen.
+template <typename Image>
+auto sequences_of(const pybind11::list& sequences, const Image& image_of) {
+  std::vector<std::vector<decltype(image_of(pybind11::handle()))>> result;
+  for (const pybind11::handle& sequence : sequences) {
+    result.emplace_back();
+    for (const pybind11::handle& image : sequence.cast<pybind11::list>()) {
+      if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+      result.back().push_back(image_of(image));
+    }
+  }
+  return result;
+}
+
 // An image from (truth n x 4, ignored n, regions k x 4, detections m x 4, scores m).
 evaluation::ScoredImage scored_image_of(const pybind11::handle& item);
 

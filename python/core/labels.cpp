@@ -12,14 +12,13 @@ namespace airtruth::python {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace py::literals;
 using exchange::Clip;
 
 py::object mask_dict(const std::optional<exchange::PixelMask>& mask) {
   if (!mask) return py::none();
-  py::dict dict;
-  dict["size"] = py::make_tuple(mask->height, mask->width);
-  dict["counts"] = text(mask->counts);
-  return dict;
+  return py::dict("size"_a = py::make_tuple(mask->height, mask->width),
+                  "counts"_a = text(mask->counts));
 }
 
 py::dict label_dict(const exchange::Label& label) {
@@ -88,27 +87,24 @@ py::list dicts(const PyClips& clips) {
 }  // namespace
 
 py::dict clip_dict(const Clip& clip) {
-  py::dict dict;
-  const IntoDict into{dict};
-  into("name", clip.name);
-  into("width", clip.width);
-  into("height", clip.height);
-  into("frame_rate_hz", clip.frame_rate_hz);
-  dict["media"] = py::cast(clip.media);
   py::list frames;
   for (const exchange::LabelledFrame& frame : clip.frames) {
     py::dict one;
-    const IntoDict into_one{one};
-    into_one("frame", frame.frame);
-    into_one("time_s", frame.time_s);
-    into_one("picture", frame.picture);
+    const IntoDict into{one};
+    into("frame", frame.frame);
+    into("time_s", frame.time_s);
+    into("picture", frame.picture);
     py::list labels;
     for (const exchange::Label& label : frame.labels) labels.append(label_dict(label));
     one["labels"] = labels;
     frames.append(one);
   }
-  dict["frames"] = frames;
-  return dict;
+  return py::dict("name"_a = text(clip.name),
+                  "width"_a = clip.width,
+                  "height"_a = clip.height,
+                  "frame_rate_hz"_a = clip.frame_rate_hz,
+                  "media"_a = clip.media,
+                  "frames"_a = frames);
 }
 
 void bind_labels(py::module_& core) {

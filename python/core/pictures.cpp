@@ -14,17 +14,15 @@ namespace airtruth::python {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace py::literals;
 
 py::dict info_dict(const VideoInfo& info) {
-  py::dict dict;
-  const IntoDict into{dict};
-  into("width", info.width);
-  into("height", info.height);
-  into("frame_rate_hz", info.frame_rate_hz);
-  into("frame_count_estimate", info.frame_count_estimate);
-  into("codec", info.codec);
-  into("pixel_format", info.pixel_format);
-  return dict;
+  return py::dict("width"_a = info.width,
+                  "height"_a = info.height,
+                  "frame_rate_hz"_a = info.frame_rate_hz,
+                  "frame_count_estimate"_a = info.frame_count_estimate,
+                  "codec"_a = text(info.codec),
+                  "pixel_format"_a = text(info.pixel_format));
 }
 
 // The frames of a scene. A thread of its own makes them (Worker), as OpenGL's context needs.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -138,13 +139,46 @@ template <std::size_t N>
 py::object python_of(const std::array<double, N>& values) {
   return array_of(std::vector<double>(values.begin(), values.end()), {py::ssize_t{N}});
 }
-inline py::object python_of(const std::vector<double>& values) {
-  return array_of(values, {std::ssize(values)});
+// An array of n numbers, or n x N.
+template <typename T>
+py::object python_of(std::vector<T> values) {
+  const py::ssize_t count = std::ssize(values);
+  return array_of(std::move(values), {count});
+}
+template <std::size_t N>
+py::object python_of(const std::vector<std::array<double, N>>& rows) {
+  std::vector<double> values;
+  values.reserve(N * rows.size());
+  for (const std::array<double, N>& row : rows) values.insert(values.end(), row.begin(), row.end());
+  return array_of(std::move(values), {std::ssize(rows), py::ssize_t{N}});
+}
+inline py::object python_of(const std::vector<std::string>& texts) {
+  py::list list;
+  for (const std::string& one : texts) list.append(text(one));
+  return list;
 }
 template <typename T>
 py::object python_of(const std::optional<T>& value) {
   return value ? python_of(*value) : py::object(py::none());
 }
+
+// What `member` is of each row, as python_of() has it.
+template <typename Row, typename Member>
+py::object column(const std::vector<Row>& rows, Member member) {
+  std::vector<std::remove_cvref_t<std::invoke_result_t<Member, const Row&>>> values;
+  values.reserve(rows.size());
+  for (const Row& row : rows) values.push_back(std::invoke(member, row));
+  return python_of(std::move(values));
+}
+
+// Reads keyword arguments, with the errors of argument(): take(name, value).
+struct FromKeywords {
+  const py::kwargs& given;
+  template <typename T>
+  void operator()(const char* name, T& value) const {
+    value = argument<T>(given[name], name);
+  }
+};
 
 // Fills a dict: visit(name, value).
 struct IntoDict {
