@@ -71,16 +71,18 @@ int checked_threads(const py::object& threads, const char* what) {
   return whole_of<int>(threads, what, 0, 256);
 }
 
-void Warnings::add(const std::string& message) {
-  const std::lock_guard lock(mutex_);
-  messages_.push_back(message);
+Warn Warnings::taker() const {
+  return [kept = kept_](const std::string& message) {
+    const std::lock_guard lock(kept->mutex);
+    kept->messages.push_back(message);
+  };
 }
 
 void Warnings::hand_over() {
   std::vector<std::string> messages;
   {
-    const std::lock_guard lock(mutex_);
-    messages.swap(messages_);
+    const std::lock_guard lock(kept_->mutex);
+    messages.swap(kept_->messages);
   }
   // The second frame is that of whoever called the package.
   for (const std::string& message : messages)

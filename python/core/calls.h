@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include <airtruth/error.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl/filesystem.h>
 #include <sys/types.h>
@@ -71,13 +72,17 @@ void take_cache(const py::object& cache, Options& options) {
 // What the library warns of, kept until the caller's thread hands it to Python's `warnings`.
 class Warnings {
  public:
-  void add(const std::string& message);
+  // Keeps messages of any thread, also of one that outlives this object.
+  Warn taker() const;
   // With the GIL held. Throws where a filter of Python makes an error of a warning.
   void hand_over();
 
  private:
-  std::mutex mutex_;
-  std::vector<std::string> messages_;
+  struct Kept {
+    std::mutex mutex;
+    std::vector<std::string> messages;
+  };
+  std::shared_ptr<Kept> kept_ = std::make_shared<Kept>();
 };
 
 // Progress of work in another thread, which a function of Python hears of in its own.
@@ -127,8 +132,6 @@ class Worker {
  public:
   Worker();
   ~Worker();
-  Worker(const Worker&) = delete;
-  Worker& operator=(const Worker&) = delete;
 
   std::stop_token stop() const { return stop_.get_token(); }
   bool is_stopped() const { return stop_.stop_requested(); }
@@ -156,18 +159,17 @@ class Worker {
 // `progress`, a function of Python, stops. `Options` has stop, and may have warn and progress.
 template <typename Options, typename Work>
 auto stoppable(Options options, const Work& work, const py::object& progress = py::none()) {
-  const auto warnings = std::make_shared<Warnings>();
+  Warnings warnings;
   HeardProgress heard(progress);
   Worker worker;
-  if constexpr (requires { options.warn; })
-    options.warn = [warnings](const std::string& message) { warnings->add(message); };
+  if constexpr (requires { options.warn; }) options.warn = warnings.taker();
   if constexpr (requires { options.progress; })
     options.progress = [&heard](std::int64_t done, std::int64_t total) { heard.set(done, total); };
   options.stop = worker.stop();
   std::optional<decltype(work(options))> result;
   worker.run([&] { result.emplace(work(options)); }, [&] { heard.tell(); });
   heard.tell();
-  warnings->hand_over();
+  warnings.hand_over();
   return std::move(*result);
 }
 

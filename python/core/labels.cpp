@@ -58,14 +58,11 @@ PyClips clips_in(const std::string& format,
   if (size) options.size = {size_of(size->first, "width"), size_of(size->second, "height")};
   options.category = category;
   options.size_of_picture = &size_of_picture;
-  const auto warnings = std::make_shared<Warnings>();
-  PyClips found{left_alone([=] {
-    return exchange::read_clips(
-        exchange::format_from_name(format), source, options, [&](const std::string& message) {
-          warnings->add(message);
-        });
+  Warnings warnings;
+  PyClips found{left_alone([=, warn = warnings.taker()] {
+    return exchange::read_clips(exchange::format_from_name(format), source, options, warn);
   })};
-  warnings->hand_over();
+  warnings.hand_over();
   return found;
 }
 

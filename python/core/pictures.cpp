@@ -35,7 +35,7 @@ class PyRenderer {
     RenderOptions options;
     options.threads = checked_threads(threads);
     take_cache(cache, options);
-    options.warn = [warnings = warnings_](const std::string& message) { warnings->add(message); };
+    options.warn = warnings_.taker();
     options.stop = worker_->stop();
     try {
       open(scene, folder, options);
@@ -51,8 +51,6 @@ class PyRenderer {
     static_cast<void>(worker_.release());
     static_cast<void>(renderer_.release());
   }
-  PyRenderer(const PyRenderer&) = delete;
-  PyRenderer& operator=(const PyRenderer&) = delete;
 
   // (picture, truth), or None after the last frame.
   py::object next() {
@@ -93,7 +91,7 @@ class PyRenderer {
 
   void run(const std::function<void()>& work) {
     worker_->run(work);
-    warnings_->hand_over();
+    warnings_.hand_over();
   }
 
   void expect_open() const {
@@ -103,7 +101,7 @@ class PyRenderer {
   }
 
   Process process_;
-  std::shared_ptr<Warnings> warnings_ = std::make_shared<Warnings>();
+  Warnings warnings_;
   std::unique_ptr<Worker> worker_ = std::make_unique<Worker>();
   std::unique_ptr<Renderer> renderer_;
 };
@@ -114,18 +112,15 @@ class PyVideoReader {
   PyVideoReader(const fs::path& video, const py::object& first_frame) {
     const auto first = whole_of<std::int64_t>(
         first_frame, "first_frame", 0, std::numeric_limits<std::int64_t>::max());
-    const Warn warn = [warnings = warnings_](const std::string& message) {
-      warnings->add(message);
-    };
-    reader_ = left_alone([=] { return std::make_unique<VideoReader>(video, first, warn); });
-    warnings_->hand_over();
+    reader_ = left_alone([=, warn = warnings_.taker()] {
+      return std::make_unique<VideoReader>(video, first, warn);
+    });
+    warnings_.hand_over();
   }
   // The decoder's threads do not exist in a process that was forked off.
   ~PyVideoReader() {
     if (!process_.is_this()) static_cast<void>(reader_.release());
   }
-  PyVideoReader(const PyVideoReader&) = delete;
-  PyVideoReader& operator=(const PyVideoReader&) = delete;
 
   py::object next() {
     const Use use(*this);
@@ -134,7 +129,7 @@ class PyVideoReader {
       const GilReleased released;
       frame = reader_->next();
     }
-    warnings_->hand_over();
+    warnings_.hand_over();
     if (!frame) return py::none();
     return py::make_tuple(
         picture_tuple(std::move(frame->picture)), frame->index, frame->time_s, frame->damaged);
@@ -170,7 +165,7 @@ class PyVideoReader {
   };
 
   Process process_;
-  std::shared_ptr<Warnings> warnings_ = std::make_shared<Warnings>();
+  Warnings warnings_;
   std::unique_ptr<VideoReader> reader_;
   // Changes with the GIL held.
   bool is_used_ = false;

@@ -65,13 +65,13 @@ class PyStream {
     options.seed = argument<std::uint64_t>(seed, "seed");
     options.threads = checked_threads(threads);
     take_cache(cache, options);
-    options.warn = [warnings = warnings_](const std::string& message) { warnings->add(message); };
+    options.warn = warnings_.taker();
     options.stop = worker_->stop();
     stream_ = std::make_unique<Stream>(
         py::isinstance<py::str>(catalogue)
             ? Stream::from_text(catalogue.cast<std::string>(), folder, options)
             : Stream(catalogue.cast<fs::path>(), options));
-    warnings_->hand_over();
+    warnings_.hand_over();
   }
   // A process that was forked off has none of the threads: all is left as it is.
   ~PyStream() {
@@ -79,8 +79,6 @@ class PyStream {
     static_cast<void>(worker_.release());
     static_cast<void>(stream_.release());
   }
-  PyStream(const PyStream&) = delete;
-  PyStream& operator=(const PyStream&) = delete;
 
   // (background, first_frame, weight, crop, [(picture, truth, masks, covered)])
   py::tuple sample(std::int64_t index) {
@@ -115,11 +113,11 @@ class PyStream {
       const GilReleased released;
       work();
     }
-    warnings_->hand_over();
+    warnings_.hand_over();
   }
 
   Process process_;
-  std::shared_ptr<Warnings> warnings_ = std::make_shared<Warnings>();
+  Warnings warnings_;
   std::unique_ptr<Worker> worker_ = std::make_unique<Worker>();
   std::unique_ptr<Stream> stream_;
 };

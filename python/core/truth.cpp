@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
+#include <array>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -11,21 +11,8 @@
 namespace airtruth::python {
 namespace {
 
-std::string name_of(IntruderState state) {
-  switch (state) {
-    case IntruderState::kVisible:
-      return "visible";
-    case IntruderState::kHidden:
-      return "hidden";
-    case IntruderState::kOutside:
-      return "outside";
-    case IntruderState::kBehind:
-      return "behind";
-    case IntruderState::kEnded:
-      return "ended";
-  }
-  return "unknown";
-}
+// In the order of IntruderState.
+constexpr std::array<const char*, 5> kStates = {"visible", "hidden", "outside", "behind", "ended"};
 
 template <typename Visit>
 void each_frame_field(Visit&& visit, const FrameTruth& t) {
@@ -46,7 +33,7 @@ void each_intruder_field(Visit&& visit, const IntruderTruth& t) {
   visit("id", t.id);
   visit("aircraft", t.aircraft);
   visit("object_class", t.object_class);
-  visit("state", name_of(t.state));
+  visit("state", std::string(kStates.at(static_cast<std::size_t>(t.state))));
   visit("position_ned_m", t.position_ned_m);
   visit("velocity_ned_mps", t.velocity_ned_mps);
   visit("attitude_yaw_pitch_roll_deg", t.attitude_yaw_pitch_roll_deg);
