@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <airtruth/labels.h>
 #include <airtruth/picture.h>
 #include <airtruth/truth.h>
 #include <pybind11/pybind11.h>
@@ -16,7 +15,6 @@ void bind_lens(py::module_& core);
 void bind_pictures(py::module_& core);
 void bind_stream(py::module_& core);
 void bind_dataset(py::module_& core);
-void bind_labels(py::module_& core);
 void bind_evaluate(py::module_& core);
 void bind_clips(py::module_& core);
 void bind_detectors(py::module_& core);
@@ -28,8 +26,6 @@ py::dict truth_dict(const FrameTruth& truth);
 py::dict intruder_columns(const std::vector<FrameTruth>& frames);
 // A column for each field of a frame but its intruders.
 py::dict frame_columns(const std::vector<FrameTruth>& frames);
-// The arguments of airtruth.Clip.
-py::dict clip_dict(const exchange::Clip& clip);
 // (planes, pixel_format, matrix, is_full_range); the planes' samples are moved into the arrays.
 py::tuple picture_tuple(FramePicture picture);
 

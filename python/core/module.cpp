@@ -40,7 +40,6 @@ PYBIND11_MODULE(_core, core) {
   bind_lens(core);
   bind_pictures(core);
   bind_stream(core);
-  bind_labels(core);
   bind_dataset(core);
   bind_evaluate(core);
   bind_clips(core);
