@@ -210,9 +210,22 @@ def first_loss(truth: ArrayLike, answers: ArrayLike) -> Optional[int]:
     return _core.first_loss(truth, answers)
 
 
-def _by_sequence(sequences: Optional[Sequence[int]], **columns: Sequence[ArrayLike]) -> List[List[Tuple[ArrayLike, ...]]]:
-    """The images of each sequence, each with what the columns have for it."""
-    count = len(columns["truth"])
+def _flags(boxes: Sequence[ArrayLike], flags: Optional[Sequence[ArrayLike]], otherwise: float = 0) -> Sequence[ArrayLike]:
+    """For each image a number for each box: as they are given, or all the same."""
+    return [np.full(len(np.asarray(one)), otherwise) for one in boxes] if flags is None else flags
+
+
+def _by_sequence(
+    truth: Sequence[ArrayLike],
+    sequences: Optional[Sequence[int]],
+    ignored: Optional[Sequence[ArrayLike]],
+    regions: Optional[Sequence[ArrayLike]],
+    **more: Sequence[ArrayLike],
+) -> List[List[Tuple[ArrayLike, ...]]]:
+    """The images of each sequence, each with its truth, what is ignored, its regions, and what more there is for it."""
+    nowhere: Sequence[ArrayLike] = [np.zeros((0, 4))] * len(truth)
+    columns = {"truth": truth, "ignored": _flags(truth, ignored), "regions": nowhere if regions is None else regions, **more}
+    count = len(truth)
     numbers = [0] * count if sequences is None else [int(number) for number in sequences]
     for name, length in [*((name, len(column)) for name, column in columns.items()), ("sequences", len(numbers))]:
         if length != count:
@@ -221,15 +234,6 @@ def _by_sequence(sequences: Optional[Sequence[int]], **columns: Sequence[ArrayLi
     for number, image in zip(numbers, zip(*columns.values())):
         grouped.setdefault(number, []).append(image)
     return list(grouped.values())
-
-
-def _flags(truth: Sequence[ArrayLike], flags: Optional[Sequence[ArrayLike]], otherwise: float = 0) -> Sequence[ArrayLike]:
-    """For each image a number for each box: as they are given, or all the same."""
-    return [np.full(len(np.asarray(one)), otherwise) for one in truth] if flags is None else flags
-
-
-def _regions(truth: Sequence[ArrayLike], regions: Optional[Sequence[ArrayLike]]) -> Sequence[ArrayLike]:
-    return [np.zeros((0, 4))] * len(truth) if regions is None else regions
 
 
 def average_precision(
@@ -255,9 +259,7 @@ def average_precision(
     >>> round(ap.ap_50, 4), ap.ap_large, ap.curve_50.truths
     (0.835, None, 2)
     """
-    grouped = _by_sequence(
-        sequences, truth=truth, ignored=_flags(truth, ignored), regions=_regions(truth, regions), detections=detections, scores=scores
-    )
+    grouped = _by_sequence(truth, sequences, ignored, regions, detections=detections, scores=scores)
     fields = _core.average_precision(grouped, centre_px)
     for name in ("curve_50", "curve_centre"):
         fields[name] = fields[name] and Curve(**fields[name])
@@ -284,9 +286,7 @@ def froc(
     >>> curve.score, curve.detection, curve.false_alarms_per_hour.round()
     (array([0.9, 0.8, 0.7]), array([0.5, 0.5, 1. ]), array([    0., 36000., 36000.]))
     """
-    grouped = _by_sequence(
-        sequences, truth=truth, ignored=_flags(truth, ignored), regions=_regions(truth, regions), detections=detections, scores=scores
-    )
+    grouped = _by_sequence(truth, sequences, ignored, regions, detections=detections, scores=scores)
     return Froc(**_core.froc(grouped, rate_hz, centre_px))
 
 
@@ -311,10 +311,7 @@ def hota(
     >>> result.det_a, result.ass_a, round(result.hota, 4), result.at_overlaps["hota"].shape
     (1.0, 0.625, 0.7906, (19,))
     """
-    grouped = _by_sequence(
-        sequences, truth=truth, truth_tracks=truth_tracks, ignored=_flags(truth, ignored), regions=_regions(truth, regions),
-        detections=detections, tracks=tracks,
-    )
+    grouped = _by_sequence(truth, sequences, ignored, regions, truth_tracks=truth_tracks, detections=detections, tracks=tracks)
     return Hota(**_core.hota(grouped, centre_px))
 
 
@@ -348,7 +345,10 @@ def aot(
     >>> seen.edr, seen.afdr, seen.hfar
     ((1, 1, 1.0), (40, 40, 1.0), 0.0)
     """
-    flights = _flights(truth, truth_tracks, detections, scores, tracks, ranges_m, above_horizon, sequences, ignored, regions)
+    flights = _by_sequence(
+        truth, sequences, ignored, regions, truth_tracks=truth_tracks, ranges_m=_flags(truth, ranges_m, np.nan),
+        above_horizon=_flags(truth, above_horizon), detections=detections, scores=scores, tracks=_flags(detections, tracks, np.nan),
+    )
     return AotScore(**_core.aot(flights, rate_hz, centre_px, min_score, min_track_frames))
 
 
@@ -375,28 +375,13 @@ def aot_ranks(
     >>> by_hfar, by_fppi.score
     (None, 0.5)
     """
-    flights = _flights(truth, truth_tracks, detections, scores, tracks, ranges_m, above_horizon, sequences, ignored, regions)
+    flights = _by_sequence(
+        truth, sequences, ignored, regions, truth_tracks=truth_tracks, ranges_m=_flags(truth, ranges_m, np.nan),
+        above_horizon=_flags(truth, above_horizon), detections=detections, scores=scores, tracks=_flags(detections, tracks, np.nan),
+    )
     found = _core.aot_ranks(flights, rate_hz, centre_px)
     by_hfar, by_fppi = (None if fields is None else AotScore(**fields) for fields in found)
     return by_hfar, by_fppi
-
-
-def _flights(
-    truth: Sequence[ArrayLike],
-    truth_tracks: Sequence[ArrayLike],
-    detections: Sequence[ArrayLike],
-    scores: Sequence[ArrayLike],
-    tracks: Optional[Sequence[ArrayLike]],
-    ranges_m: Optional[Sequence[ArrayLike]],
-    above_horizon: Optional[Sequence[ArrayLike]],
-    sequences: Optional[Sequence[int]],
-    ignored: Optional[Sequence[ArrayLike]],
-    regions: Optional[Sequence[ArrayLike]],
-) -> List[List[Tuple[ArrayLike, ...]]]:
-    return _by_sequence(
-        sequences, truth=truth, truth_tracks=truth_tracks, ranges_m=_flags(truth, ranges_m, np.nan),
-        above_horizon=_flags(truth, above_horizon), ignored=_flags(truth, ignored), regions=_regions(truth, regions), detections=detections, scores=scores, tracks=_flags(detections, tracks, np.nan),
-    )
 
 
 def bootstrap_mean(values: ArrayLike, weights: Optional[ArrayLike] = None) -> Optional[Interval]:

@@ -110,10 +110,10 @@ std::vector<TrackBox> track_boxes(const std::vector<std::optional<Box>>& rows,
   return result;
 }
 
-// (truth n x 4, truth_tracks n, ignored n, regions k x 4, detections m x 4, tracks m).
+// (truth n x 4, ignored n, regions k x 4, truth_tracks n, detections m x 4, tracks m).
 TrackFrame track_frame_of(const py::handle& item, double centre_px) {
   using Object = py::object;
-  const auto [truth, truth_tracks, ignored, regions, detections, tracks] =
+  const auto [truth, ignored, regions, truth_tracks, detections, tracks] =
       item.cast<std::tuple<Object, Object, Object, Object, Object, Object>>();
   const Counting counting(truth, ignored, regions, detections, centre_px);
   return {track_boxes(counting.truths, truth_tracks, "truth_tracks"),
@@ -146,16 +146,16 @@ py::dict hota_dict(const py::list& sequences, double centre_px) {
   return means;
 }
 
-// (truth n x 4, truth_tracks n, ranges_m n, above_horizon n, ignored n, regions k x 4,
+// (truth n x 4, ignored n, regions k x 4, truth_tracks n, ranges_m n, above_horizon n,
 // detections m x 4, scores m, tracks m).
 AotFrame aot_frame_of(const py::handle& item, double centre_px) {
   using Object = py::object;
   const auto [truth,
+              ignored,
+              regions,
               truth_tracks,
               ranges_m,
               above_horizon,
-              ignored,
-              regions,
               detections,
               scores,
               tracks] =
