@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import contextlib
 from types import TracebackType
 from typing import Iterator, Optional, Type, Union
 
@@ -12,7 +13,7 @@ from ._source import Source, cache_of, source_of
 from ._video import Path, VideoInfo
 
 
-class Rendering:
+class Rendering(contextlib.AbstractContextManager["Rendering"], Iterator[Frame]):
     """The frames of a scene, which render() begins: an iterator over Frame, and a context that closes it.
 
     >>> with airtruth.render("scene.toml") as frames:
@@ -37,9 +38,6 @@ class Rendering:
         """The camera's lens. airtruth.Error after close()."""
         return Lens(self._core.lens())
 
-    def __iter__(self) -> Iterator[Frame]:
-        return self
-
     def __next__(self) -> Frame:
         # A terminal shows the line while a frame is awaited, and is the caller's own between frames.
         if not self._progress:
@@ -60,9 +58,6 @@ class Rendering:
     def close(self) -> None:
         """Ends the work and frees its memory. Frames that were made stay."""
         self._core.close()
-
-    def __enter__(self) -> Rendering:
-        return self
 
     def __exit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]) -> None:
         self.close()

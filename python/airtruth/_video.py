@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import contextlib
 import os
 from dataclasses import dataclass
 from types import TracebackType
@@ -24,7 +25,7 @@ class VideoInfo:
     pixel_format: str  # FFmpeg's name, for example "yuv420p"
 
 
-class VideoReader:
+class VideoReader(contextlib.AbstractContextManager["VideoReader"], Iterator[Frame]):
     """The frames of a video (H.264, HEVC, MJPEG, FFV1, ... in mp4, mov, avi, mkv, webm) or of numbered images ("frames/%04d.png", or
     their folder), one after the other, from `first_frame` on, which has the index 0 and the time 0 s.
 
@@ -44,9 +45,6 @@ class VideoReader:
         """Size, rate and format."""
         return VideoInfo(**self._core.info())
 
-    def __iter__(self) -> Iterator[Frame]:
-        return self
-
     def __next__(self) -> Frame:
         got = self._core.next()
         if got is None:
@@ -57,9 +55,6 @@ class VideoReader:
     def close(self) -> None:
         """Closes the file. Frames that were read stay."""
         self._core.close()
-
-    def __enter__(self) -> VideoReader:
-        return self
 
     def __exit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]) -> None:
         self.close()
