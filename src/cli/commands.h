@@ -63,16 +63,18 @@ auto add_command(CLI::App& group,
   return std::pair(command, arguments.get());
 }
 
-// An option that is given has an effect. Otherwise the command ends with an Error: "--every has no
-// effect without --deep".
+// Each of these options that is given has an effect. Otherwise the command ends with an Error:
+// "--every has no effect without --deep".
 inline void expect_effect(Context& context,
-                          const CLI::Option* option,
-                          std::function<bool()> has_effect,
-                          std::string without) {
-  context.checks.push_back([option, has_effect = std::move(has_effect), without] {
-    if (option->count() > 0 && !has_effect())
-      throw Error(fmt::format("{} has no effect {}; leave it out", option->get_name(), without));
-  });
+                          const CLI::App& command,
+                          const std::vector<std::string>& options,
+                          const std::string& without,
+                          const std::function<bool()>& has_effect) {
+  for (const std::string& name : options)
+    context.checks.push_back([option = command.get_option(name), without, has_effect] {
+      if (option->count() > 0 && !has_effect())
+        throw Error(fmt::format("{} has no effect {}; leave it out", option->get_name(), without));
+    });
 }
 
 // --timeout and --start-timeout of programs that answer (process::Limits), which have an effect on
@@ -84,15 +86,12 @@ void add_limits(CLI::App& command,
                 Context& context,
                 const std::function<bool()>& has_effect,
                 const char* without) {
-  const auto add = [&](const char* name, double& seconds, const char* description) {
-    expect_effect(
-        context,
-        command.add_option(name, seconds, description)->check(CLI::Range(0.001, 86'400.0)),
-        has_effect,
-        without);
-  };
-  add("--timeout", limits.answer_s, of_an_answer);
-  add("--start-timeout", limits.start_s, "Longest that it may take to start, s (default: 30)");
+  const CLI::Range range(0.001, 86'400.0);
+  command.add_option("--timeout", limits.answer_s, of_an_answer)->check(range);
+  command.add_option("--start-timeout", limits.start_s)
+      ->description("Longest that it may take to start, s (default: 30)")
+      ->check(range);
+  expect_effect(context, command, {"--timeout", "--start-timeout"}, without, has_effect);
 }
 
 // Shows the warnings of a stage and its progress, and lets an interrupt stop it.

@@ -61,14 +61,12 @@ void add_match_options(CLI::App& command, CompareArguments& arguments, Context& 
       command.add_option("--types", arguments.types)
           ->description("Aircraft to search among (`airtruth aircraft list`), with commas between")
           ->delimiter(',');
-  const CLI::Option* helicopter =
-      command.add_flag("--helicopter", arguments.helicopter)
-          ->description(
-              "The real aircraft is a helicopter: search among helicopters, not aeroplanes")
-          ->excludes(types);
-  for (const CLI::Option* option : {static_cast<const CLI::Option*>(types), helicopter})
-    expect_effect(
-        context, option, [&arguments] { return arguments.match; }, "with --no-match");
+  command.add_flag("--helicopter", arguments.helicopter)
+      ->description("The real aircraft is a helicopter: search among helicopters, not aeroplanes")
+      ->excludes(types);
+  expect_effect(context, command, {"--types", "--helicopter"}, "with --no-match", [&arguments] {
+    return arguments.match;
+  });
   command.add_option("--camera-pitch", arguments.camera_pitch_deg)
       ->description(
           "Degrees that the camera looks up, which says where light comes from (without: "

@@ -148,14 +148,11 @@ void add_faintness(CLI::App& command, labelled::ExportOptions& options, Context&
   command.add_option("--min-size", options.min_size_px)
       ->description("The same for boxes whose longer side has fewer pixels (default: 0)")
       ->check(CLI::Range(0.0, 1e6));
-  const CLI::Option* drop_faint =
-      command.add_flag("--drop-faint", options.drop_faint)
-          ->description("Leave out what --min-contrast and --min-size refuse, in every format");
+  command.add_flag("--drop-faint", options.drop_faint)
+      ->description("Leave out what --min-contrast and --min-size refuse, in every format");
+  const auto refuses = [&options] { return options.min_contrast > 0 || options.min_size_px > 0; };
   expect_effect(
-      context,
-      drop_faint,
-      [&options] { return options.min_contrast > 0 || options.min_size_px > 0; },
-      "without --min-contrast or --min-size");
+      context, command, {"--drop-faint"}, "without --min-contrast or --min-size", refuses);
 }
 
 void add_export(CLI::App& group, Context& context) {
@@ -183,18 +180,14 @@ void add_export(CLI::App& group, Context& context) {
                       out->split,
                       "by-background (default): a video is in one part alone; by-sequence; "
                       "none");
-  const CLI::Option* shares =
-      command->add_option("--shares", out->shares, "Of train, val and test (default: 0.8 0.1 0.1)")
-          ->expected(3)
-          ->check(CLI::Range(0.0, 1e6));
-  const CLI::Option* seed =
-      command->add_option("--seed", out->options.seed, "Of the split (default: 1)");
-  for (const CLI::Option* option : {shares, seed})
-    expect_effect(
-        context,
-        option,
-        [arguments = out] { return arguments->split != "none"; },
-        "with --split none");
+  command->add_option("--shares", out->shares, "Of train, val and test (default: 0.8 0.1 0.1)")
+      ->expected(3)
+      ->check(CLI::Range(0.0, 1e6));
+  command->add_option("--seed", out->options.seed, "Of the split (default: 1)");
+  const std::string& split = out->split;
+  expect_effect(context, *command, {"--shares", "--seed"}, "with --split none", [&split] {
+    return split != "none";
+  });
   command->add_flag(
       "--one-class", out->options.one_class, "One class, `aircraft`, in place of the types");
   command->add_flag("--mot-classes",
@@ -235,13 +228,13 @@ void add_import(CLI::App& group, Context& context) {
                       "[CLIP=]N, of otb, got10k and vot: the number of the first box's picture, "
                       "where there are more pictures than boxes");
   command->add_option("--size", in->size, "WxH of the pictures, where nothing says it");
-  const CLI::Option* origin =
-      command->add_option("--origin", in->options.read.origin_px)
-          ->description("Of csv: what the first pixel is called, 0 (default) or 1 (MATLAB)")
-          ->check(CLI::Range(0, 1));
+  command->add_option("--origin", in->options.read.origin_px)
+      ->description("Of csv: what the first pixel is called, 0 (default) or 1 (MATLAB)")
+      ->check(CLI::Range(0, 1));
   const std::string& format = in->format;
-  expect_effect(
-      context, origin, [&format] { return format == "csv"; }, "without --format csv");
+  expect_effect(context, *command, {"--origin"}, "without --format csv", [&format] {
+    return format == "csv";
+  });
   command->add_option(
       "--category", in->options.read.category, "Where the labels name none (default: aircraft)");
   add_frame_rate(*command, in->options.frame_rate_hz);
@@ -560,12 +553,11 @@ void add_verify(CLI::App& group, Context& context) {
       ->description("First write the manifest, where several workers made the sequences");
   command->add_flag(
       "--deep", arguments->deep, "Also draw sampled frames anew and compare them with the videos");
-  const CLI::Option* every = command->add_option("--every", arguments->deep_every)
-                                 ->description("With --deep: every n-th frame (default: 30)")
-                                 ->check(above_0());
+  command->add_option("--every", arguments->deep_every)
+      ->description("With --deep: every n-th frame (default: 30)")
+      ->check(above_0());
   const bool& is_deep = arguments->deep;
-  expect_effect(
-      context, every, [&is_deep] { return is_deep; }, "without --deep");
+  expect_effect(context, *command, {"--every"}, "without --deep", [&is_deep] { return is_deep; });
   add_jobs(*command, arguments->verify_jobs, "Sequences at a time (default: one per core)");
 }
 

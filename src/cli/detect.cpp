@@ -72,17 +72,16 @@ void run_detect(Detect arguments, Context& context) {
 
 void add_masks(CLI::App& command, Detect& arguments, Context& context) {
   runs::DetectOptions& options = arguments.options;
-  const CLI::Option* mask = command.add_option(
+  command.add_option(
       "--mask", arguments.mask, "Own-aircraft mask for what states none: black = own aircraft");
   command.add_flag("--use-masks,!--no-masks", options.masks)
       ->description("Nothing is detected, and no motion measured, on the own aircraft (default)");
-  const CLI::Option* mask_results =
-      command.add_flag("--mask-results", options.mask_results)
-          ->description(
-              "Leave out what networks and programs detect by more than half on the own aircraft");
-  for (const CLI::Option* option : {mask, mask_results})
-    expect_effect(
-        context, option, [&options] { return options.masks; }, "with --no-masks");
+  command.add_flag("--mask-results", options.mask_results)
+      ->description(
+          "Leave out what networks and programs detect by more than half on the own aircraft");
+  expect_effect(context, command, {"--mask", "--mask-results"}, "with --no-masks", [&options] {
+    return options.masks;
+  });
 }
 
 void add_options(CLI::App& command, Detect& arguments, Context& context) {
@@ -99,40 +98,37 @@ void add_options(CLI::App& command, Detect& arguments, Context& context) {
   command.add_option("--out,-o", arguments.out)
       ->description("Results, a folder for each detector; a run that was stopped goes on in it")
       ->required();
-  const CLI::Option* only =
-      command.add_option("--only", options.only, "Sequences whose name fits (* and ?)");
+  command.add_option("--only", options.only, "Sequences whose name fits (* and ?)");
   command.add_option(
       "--min-score", options.min_score, "Leave out detections with a lower score (default: none)");
   command.add_option("--max-per-frame", options.max_per_frame)
       ->description("Keep only so many of a frame, those of the highest scores (default: 100)")
       ->check(CLI::Range(1, 100'000));
-  const CLI::Option* backgrounds = command.add_flag(
+  command.add_flag(
       "--backgrounds,!--no-backgrounds",
       options.backgrounds,
       "The videos that a set was made over as well, which show no intruder; evaluate does not read "
       "their results (default: the set's sequences alone)");
-  expect_effect(
-      context, only, [&arguments] { return runs::is_set(arguments.source); }, "on a video");
-  expect_effect(
-      context,
-      backgrounds,
-      [&arguments] { return !arguments.options.backgrounds || runs::is_set(arguments.source); },
-      "on a video");
+  expect_effect(context, command, {"--only"}, "on a video", [&arguments] {
+    return runs::is_set(arguments.source);
+  });
+  expect_effect(context, command, {"--backgrounds"}, "on a video", [&arguments] {
+    return !arguments.options.backgrounds || runs::is_set(arguments.source);
+  });
   add_frame_rate(command, options.frame_rate_hz);
   command.add_option("--lens", arguments.lens)
       ->description("Calibration file for what states no lens (default: a guess of 60 degrees)");
   add_masks(command, arguments, context);
   command.add_flag(
       "--associate", arguments.associate, "Make tracks of the detections, by bearing and size");
-  const CLI::Option* declare =
-      command.add_option("--declare", arguments.declare)
-          ->description("M/N: a track is declared with M detections in N frames (default: 3/5)");
-  const CLI::Option* confident =
-      command.add_option("--confident", arguments.confident)
-          ->description("Least score that may begin a track (default: the detector's, else any)");
-  for (const CLI::Option* option : {declare, confident})
-    expect_effect(
-        context, option, [&arguments] { return arguments.associate; }, "without --associate");
+  command.add_option("--declare", arguments.declare)
+      ->description("M/N: a track is declared with M detections in N frames (default: 3/5)");
+  command.add_option("--confident", arguments.confident)
+      ->description("Least score that may begin a track (default: the detector's, else any)");
+  expect_effect(
+      context, command, {"--declare", "--confident"}, "without --associate", [&arguments] {
+        return arguments.associate;
+      });
   const auto has_program = [&options] {
     return std::ranges::any_of(options.detectors, runs::is_program);
   };

@@ -168,10 +168,7 @@ void add_detection_options(CLI::App& command, Evaluate& arguments, Context& cont
       ->check(CLI::Range(0.0, 1e6))
       ->group(kOfDetectors);
   expect_effect(
-      context,
-      command.get_option("--false-alarms"),
-      [&options] { return !options.score; },
-      "with --score");
+      context, command, {"--false-alarms"}, "with --score", [&options] { return !options.score; });
   command.add_option("--volume", options.volume)
       ->description(
           "Volume to keep clear of: f3442, do365-non-cooperative and others, or the scenes' "
@@ -431,11 +428,15 @@ void expect_results(CLI::App& command, const Evaluate& arguments, Context& conte
       });
     };
   };
-  for (const char* name : {"--origin", "--eao-range", "--speed-until-loss"})
-    expect_effect(context, command.get_option(name), has(false), "without results of a tracker");
+  expect_effect(context,
+                command,
+                {"--origin", "--eao-range", "--speed-until-loss"},
+                "without results of a tracker",
+                has(false));
   for (const CLI::Option* option : command.get_options())
     if (option->get_group() == kOfDetectors)
-      expect_effect(context, option, has(true), "without results of a detector");
+      expect_effect(
+          context, command, {option->get_name()}, "without results of a detector", has(true));
 }
 
 }  // namespace

@@ -129,12 +129,11 @@ void add_lens(CLI::App& app, Context& context) {
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("-o,--out", arguments->out, "Calibration to write, for [lens] file (.yml)");
-  const CLI::Option* uncertain =
-      command->add_flag("--uncertain", arguments->uncertain)
-          ->description("Write the calibration also where other focal lengths fit as well");
+  command->add_flag("--uncertain", arguments->uncertain)
+      ->description("Write the calibration also where other focal lengths fit as well");
   const std::string& out = arguments->out;
   expect_effect(
-      context, uncertain, [&out] { return !out.empty(); }, "without --out");
+      context, *command, {"--uncertain"}, "without --out", [&out] { return !out.empty(); });
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file if it exists");
 
   auto [crop_command, cut] = add_command(*group, context, "crop", crop);

@@ -181,12 +181,10 @@ void add_align(CLI::App& group, Context& context) {
   command->add_option("LOG", arguments->log, "Flight log with attitudes or turn rates")->required();
   command->add_option("VIDEO", arguments->video, "Video of the same flight")->required();
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");
-  const CLI::Option* view =
-      command->add_option("--fov", arguments->fov_deg, "Vertical view of a pinhole, degrees")
-          ->check(CLI::Range(1.0, 179.0));
+  command->add_option("--fov", arguments->fov_deg, "Vertical view of a pinhole, degrees")
+      ->check(CLI::Range(1.0, 179.0));
   const std::string& lens = arguments->lens;
-  expect_effect(
-      context, view, [&lens] { return lens.empty(); }, "with --lens");
+  expect_effect(context, *command, {"--fov"}, "with --lens", [&lens] { return lens.empty(); });
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   add_frame_rate(*command, arguments->frame_rate_hz);
   command->add_option("--first-frame", arguments->first_frame)

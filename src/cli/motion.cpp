@@ -146,17 +146,14 @@ void add_motion(CLI::App& app, Context& context) {
   command->add_option("--reference", arguments->reference_name, "first_frame or smoothed")
       ->check(CLI::IsMember({"first_frame", "smoothed"}))
       ->capture_default_str();
-  const CLI::Option* smoothing =
-      command->add_option("--smoothing", arguments->smoothing_s)
-          ->description("smoothed: standard deviation of the window in seconds")
-          ->check(above_0())
-          ->capture_default_str();
+  command->add_option("--smoothing", arguments->smoothing_s)
+      ->description("smoothed: standard deviation of the window in seconds")
+      ->check(above_0())
+      ->capture_default_str();
   const std::string& reference = arguments->reference_name;
-  expect_effect(
-      context,
-      smoothing,
-      [&reference] { return reference == "smoothed"; },
-      "without --reference smoothed");
+  expect_effect(context, *command, {"--smoothing"}, "without --reference smoothed", [&reference] {
+    return reference == "smoothed";
+  });
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
 }
 

@@ -119,14 +119,13 @@ void add_studio(CLI::App& app, Context& context) {
       ->required();
   command->add_option(
       "-o,--out", arguments->out, "Folder of the videos that the page renders [out]");
-  const CLI::Option* lens =
-      command->add_option("--lens", arguments->lens)
-          ->description("For a video: calibration (OpenCV or Gyroflow) of its camera");
-  const CLI::Option* rate = add_frame_rate(*command, arguments->frame_rate_hz);
+  command->add_option("--lens", arguments->lens)
+      ->description("For a video: calibration (OpenCV or Gyroflow) of its camera");
+  add_frame_rate(*command, arguments->frame_rate_hz);
   const std::string& input = arguments->input;
-  for (const CLI::Option* option : {lens, rate})
-    expect_effect(
-        context, option, [&input] { return scene_file(input) != input; }, "on a scene");
+  expect_effect(context, *command, {"--lens", "--frame-rate"}, "on a scene", [&input] {
+    return scene_file(input) != input;
+  });
   command->add_option("--port", arguments->port, "Port of 127.0.0.1; 0: any that is free [0]")
       ->check(CLI::Range(0, 65535));
   command->add_flag("--open", arguments->open, "Open the page in the browser");

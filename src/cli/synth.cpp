@@ -86,20 +86,18 @@ void add_camera_options(CLI::App& command, SynthArguments& arguments, Context& c
   add_number(command, "--width", flight.width, 64, 8192)->description("Pixels");
   add_number(command, "--height", flight.height, 64, 8192)->description("Pixels");
   add_number(command, "--rate", flight.frame_rate_hz, 1.0, 1000.0)->description("Frames a second");
-  expect_effect(
-      context,
-      add_number(command, "--frames", flight.frame_count, 1, kMaxFrames)
-          ->description("Number of frames"),
-      [&arguments] { return arguments.duration_s <= 0; },
-      "with --duration");
+  add_number(command, "--frames", flight.frame_count, 1, kMaxFrames)
+      ->description("Number of frames");
+  expect_effect(context, command, {"--frames"}, "with --duration", [&arguments] {
+    return arguments.duration_s <= 0;
+  });
   command.add_option("--duration", arguments.duration_s, "Seconds, in place of --frames")
       ->check(CLI::Range(1e-6, 1e6));
-  expect_effect(
-      context,
-      add_number(command, "--fov", flight.vertical_fov_deg, 1.0, 150.0)
-          ->description("Pinhole: vertical view in degrees"),
-      [&arguments] { return arguments.lens_file.empty(); },
-      "with --lens");
+  add_number(command, "--fov", flight.vertical_fov_deg, 1.0, 150.0)
+      ->description("Pinhole: vertical view in degrees");
+  expect_effect(context, command, {"--fov"}, "with --lens", [&arguments] {
+    return arguments.lens_file.empty();
+  });
   command.add_option("--lens", arguments.lens_file, "A calibration file, in place of --fov");
 }
 

@@ -113,13 +113,12 @@ void add_source_options(CLI::App& command, Track& arguments, Context& context) {
                      "multistart: begun at many frames, forward and backward");
   command.add_option(
       "--init", arguments.init, "x,y,width,height of what to follow in a video, pixels from 0");
-  expect_effect(
-      context,
-      command.add_option("--first-frame", arguments.first_frame)
-          ->description("Frame of --init (default: 0)")
-          ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40)),
-      [&arguments] { return !arguments.init.empty(); },
-      "without --init");
+  command.add_option("--first-frame", arguments.first_frame)
+      ->description("Frame of --init (default: 0)")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));
+  expect_effect(context, command, {"--first-frame"}, "without --init", [&arguments] {
+    return !arguments.init.empty();
+  });
 }
 
 void add_run_options(CLI::App& command, Track& arguments, Context& context) {
@@ -131,24 +130,19 @@ void add_run_options(CLI::App& command, Track& arguments, Context& context) {
   const auto is_of = [&](const char* protocol) {
     return [&arguments, protocol] { return arguments.protocol == protocol; };
   };
-  expect_effect(context,
-                command.add_option("--only", options.only, "Sequences whose name fits (* and ?)"),
-                is_over_set,
-                "with --init");
+  command.add_option("--only", options.only, "Sequences whose name fits (* and ?)");
+  expect_effect(context, command, {"--only"}, "with --init", is_over_set);
   command.add_option("--seed", options.seed, "Of the trackers' random numbers (default: 1)");
-  expect_effect(context,
-                command.add_option("--repetitions", options.repetitions)
-                    ->description("Of --protocol restart (default: 1)")
-                    ->check(CLI::Range(1, 999)),
-                is_of("restart"),
-                "without --protocol restart");
+  command.add_option("--repetitions", options.repetitions)
+      ->description("Of --protocol restart (default: 1)")
+      ->check(CLI::Range(1, 999));
   expect_effect(
-      context,
-      command.add_option("--anchor-step", options.anchor_step)
-          ->description("Frames between the starts of --protocol multistart (default: 50)")
-          ->check(CLI::Range(1, 1'000'000)),
-      is_of("multistart"),
-      "without --protocol multistart");
+      context, command, {"--repetitions"}, "without --protocol restart", is_of("restart"));
+  command.add_option("--anchor-step", options.anchor_step)
+      ->description("Frames between the starts of --protocol multistart (default: 50)")
+      ->check(CLI::Range(1, 1'000'000));
+  expect_effect(
+      context, command, {"--anchor-step"}, "without --protocol multistart", is_of("multistart"));
   add_limits(command,
              options,
              "Longest that a TraX tracker may take for an answer, s (default: 30)",
