@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -52,31 +51,29 @@ std::string interval(const std::optional<evaluation::Interval>& found) {
   return found ? between(found->low, found->high) : "-";
 }
 
-// A line of the table of detectors.
-std::string row(const std::array<std::string, 11>& cells) {
-  // Widths of the columns, in letters.
-  constexpr std::array<int, 11> kWidths = {20, 9, 9, 15, 6, 6, 9, 6, 15, 9, 9};
-  std::string line = fmt::format("{:<{}}", cells[0], kWidths[0]);
-  for (std::size_t i = 1; i < cells.size(); ++i)
-    line += fmt::format(" {:>{}}", cells[i], kWidths[i]);
-  return line;
-}
+constexpr auto kDetectorHead =
+    "detector             sequences {:>9}            95 %   AP50     AP     score     PD"
+    "            95 %  FA/image   FA/hour";
+constexpr auto kDetectorLine =
+    "{:<20} {:>9} {:>9} {:>15} {:>6} {:>6} {:>9} {:>6} {:>15} {:>9} {:>9}";
 
 std::string row_of(const scores::DetectorScore& detector) {
   const evaluation::AveragePrecision& ap = detector.average_precision;
   const evaluation::FrocPoint& point = detector.point;
   const bool has_trials = point.detection.trials > 0;
-  return row({detector.name,
-              std::to_string(detector.sequences.size()),
-              number(ap.ap_centre, 3),
-              interval(ap.ap_centre_interval),
-              number(ap.ap_50, 3),
-              number(ap.ap, 3),
-              fmt::format("{:.4g}", point.score),
-              has_trials ? fmt::format("{:.3f}", point.detection.value) : "-",
-              has_trials ? between(point.detection.low, point.detection.high) : "-",
-              fmt::format("{:.3g}", point.false_alarms_per_image),
-              detector.froc.hours > 0 ? fmt::format("{:.0f}", point.false_alarms_per_hour) : "-"});
+  return fmt::format(
+      kDetectorLine,
+      detector.name,
+      detector.sequences.size(),
+      number(ap.ap_centre, 3),
+      interval(ap.ap_centre_interval),
+      number(ap.ap_50, 3),
+      number(ap.ap, 3),
+      fmt::format("{:.4g}", point.score),
+      has_trials ? fmt::format("{:.3f}", point.detection.value) : "-",
+      has_trials ? between(point.detection.low, point.detection.high) : "-",
+      fmt::format("{:.3g}", point.false_alarms_per_image),
+      detector.froc.hours > 0 ? fmt::format("{:.0f}", point.false_alarms_per_hour) : "-");
 }
 
 std::string share_of(const statistics::Proportion& share) {
@@ -188,17 +185,8 @@ void add_detection_options(CLI::App& command, Evaluate& arguments, Context& cont
 }
 
 void print_detections(const scores::Assessment& assessment, Console& console) {
-  console.result(row({"detector",
-                      "sequences",
-                      fmt::format("AP@{:g}px", assessment.options.centre_px),
-                      "95 %",
-                      "AP50",
-                      "AP",
-                      "score",
-                      "PD",
-                      "95 %",
-                      "FA/image",
-                      "FA/hour"}));
+  console.result(
+      fmt::format(kDetectorHead, fmt::format("AP@{:g}px", assessment.options.centre_px)));
   for (const scores::DetectorScore& detector : assessment.detectors)
     console.result(row_of(detector));
   for (const scores::DetectorScore& detector : assessment.detectors) {
@@ -208,6 +196,9 @@ void print_detections(const scores::Assessment& assessment, Console& console) {
   }
 }
 
+constexpr auto kOnePassHead =
+    "tracker              sequences    AUC            95 %   P@20     NP     AO   SR50 centre px"
+    "    mrad lost   frames/s     median";
 constexpr auto kOnePassLine =
     "{:<20} {:>9} {:>6} {:>15} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>4} {:>10} {:>10}";
 
@@ -231,20 +222,7 @@ std::string one_pass_line(const tracker_evaluation::ScoredTracker& tracker,
 }
 
 void print_one_pass(const tracker_evaluation::Assessment& assessment, Console& console) {
-  console.result(fmt::format(kOnePassLine,
-                             "tracker",
-                             "sequences",
-                             "AUC",
-                             "95 %",
-                             "P@20",
-                             "NP",
-                             "AO",
-                             "SR50",
-                             "centre px",
-                             "mrad",
-                             "lost",
-                             "frames/s",
-                             "median"));
+  console.result(kOnePassHead);
   for (const tracker_evaluation::ScoredTracker& tracker : assessment.trackers)
     if (tracker.overall) console.result(one_pass_line(tracker, *tracker.overall));
 }
