@@ -45,18 +45,13 @@ std::string roff(const std::string& text) {
 }
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  std::vector<const CLI::App*> commands;
-  for (const CLI::App* command : app.get_subcommands({}))
-    if (!command->get_group().empty()) commands.push_back(command);
-  return commands;
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
 std::vector<const CLI::Option*> options_of(const CLI::App& app, bool positional) {
-  std::vector<const CLI::Option*> options;
-  for (const CLI::Option* option : app.get_options())
-    if (!option->get_group().empty() && option->get_positional() == positional)
-      options.push_back(option);
-  return options;
+  return app.get_options([positional](const CLI::Option* option) {
+    return !option->get_group().empty() && option->get_positional() == positional;
+  });
 }
 
 // Describes the value of an option. CLI11 writes "INT:INT in [1 - 64]", "TEXT:{a,b}" or "TEXT".
@@ -124,49 +119,45 @@ std::string section(const std::string& title, const std::vector<const CLI::Optio
   return text;
 }
 
-struct Page {
-  const CLI::App* app = nullptr;
-  std::vector<std::string> path;  // airtruth, dataset, build
-};
-
-// Adds the command and all its subcommands.
-void add_pages(const Page& page, std::vector<Page>& pages) {
-  pages.push_back(page);
-  for (const CLI::App* command : commands_of(*page.app)) {
-    Page below{command, page.path};
-    below.path.push_back(command->get_name());
-    add_pages(below, pages);
-  }
+// The command and all below it.
+void add_commands(const CLI::App& app, std::vector<const CLI::App*>& commands) {
+  commands.push_back(&app);
+  for (const CLI::App* command : commands_of(app)) add_commands(*command, commands);
 }
 
-std::string joined(const std::vector<std::string>& words, const char* separator) {
-  return fmt::format("{}", fmt::join(words, separator));
+std::string joined(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, " "));
 }
 
-std::string page_name(const std::vector<std::string>& path) { return joined(path, "-"); }
+// "airtruth dataset build", or with another separator.
+std::string path_of(const CLI::App& command, const char* separator = " ") {
+  const CLI::App* group = command.get_parent();
+  return (group != nullptr ? path_of(*group, separator) + separator : "") + command.get_name();
+}
 
-std::string synopsis(const Page& page) {
-  std::string text =
-      ".SH SYNOPSIS\n\\fB" + roff(joined(page.path, " ")) + "\\fR [\\fIOPTION\\fR]...";
-  if (!commands_of(*page.app).empty()) text += " \\fICOMMAND\\fR ...";
-  for (const CLI::Option* option : options_of(*page.app, true))
+std::string page_name(const CLI::App& command) { return path_of(command, "-"); }
+
+std::string synopsis(const CLI::App& command) {
+  std::string text = ".SH SYNOPSIS\n\\fB" + roff(path_of(command)) + "\\fR [\\fIOPTION\\fR]...";
+  if (!commands_of(command).empty()) text += " \\fICOMMAND\\fR ...";
+  for (const CLI::Option* option : options_of(command, true))
     text += " \\fI" + roff(option->get_name(true)) + "\\fR" +
             (option->get_items_expected_max() > 1 ? "..." : "");
   return text + "\n";
 }
 
-std::string commands_section(const Page& page) {
-  const auto commands = commands_of(*page.app);
+std::string commands_section(const CLI::App& group) {
+  const auto commands = commands_of(group);
   if (commands.empty()) return "";
   std::string text = ".SH COMMANDS\n";
   for (const CLI::App* command : commands)
-    text += ".TP\n\\fB" + roff(page_name(page.path) + "-" + command->get_name()) + "\\fR(1)\n" +
+    text += ".TP\n\\fB" + roff(page_name(*command)) + "\\fR(1)\n" +
             roff(command->get_description()) + "\n";
   return text;
 }
 
-std::string title_and_name(const Page& page, bool is_root) {
-  const std::string name = page_name(page.path);
+std::string title_and_name(const CLI::App& command) {
+  const std::string name = page_name(command);
   std::string upper = name;
   std::transform(upper.begin(), upper.end(), upper.begin(), [](char c) {
     return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -177,43 +168,38 @@ std::string title_and_name(const Page& page, bool is_root) {
       roff(upper),
       kVersion,
       roff(name),
-      is_root ? "3D aircraft in real onboard video, with the exact truth of every frame"
-              : roff(page.app->get_description()));
+      command.get_parent() == nullptr
+          ? "3D aircraft in real onboard video, with the exact truth of every frame"
+          : roff(command.get_description()));
 }
 
 // The options that every command has, but those that each page explains itself.
-std::string common_options(const CLI::App& root) {
+std::vector<const CLI::Option*> common_options(const CLI::App& root) {
   std::vector<const CLI::Option*> common = options_of(root, false);
   std::erase_if(common, [](const CLI::Option* option) {
-    const auto names = spellings(*option);
-    return std::any_of(names.begin(), names.end(), [](const std::string& n) {
-      return n == "--help" || n == "--version";
-    });
+    return option->check_lname("help") || option->check_lname("version");
   });
-  return section("COMMON OPTIONS", common);
+  return common;
 }
 
-std::string see_also(const Page& page, bool is_root) {
-  std::vector<std::string> others;
-  if (!is_root) others.push_back("airtruth");
-  if (page.path.size() > 2) others.push_back(page_name({page.path.begin(), page.path.end() - 1}));
-  if (others.empty()) return "";
-  std::string text = ".SH SEE ALSO\n";
-  for (std::size_t i = 0; i < others.size(); ++i)
-    text += fmt::format(".BR {} (1){}\n", roff(others[i]), i + 1 < others.size() ? " ," : "");
-  return text;
+std::string see_also(const CLI::App& command) {
+  const CLI::App* group = command.get_parent();
+  if (group == nullptr) return "";
+  std::string text = ".SH SEE ALSO\n.BR airtruth (1)";
+  if (group->get_parent() != nullptr)
+    text += fmt::format(" ,\n.BR {} (1)", roff(page_name(*group)));
+  return text + "\n";
 }
 
-std::string manual_page(const CLI::App& root, const Page& page) {
-  const std::string about = page.app->get_description();
-  const bool is_root = page.app == &root;
-  std::string text = title_and_name(page, is_root);
-  text += synopsis(page);
+std::string manual_page(const CLI::App& root, const CLI::App& command) {
+  const std::string about = command.get_description();
+  std::string text = title_and_name(command);
+  text += synopsis(command);
   text += ".SH DESCRIPTION\n" + roff(about) + (about.ends_with('.') ? "\n" : ".\n");
-  text += commands_section(page);
-  text += section("ARGUMENTS", options_of(*page.app, true));
-  text += section("OPTIONS", options_of(*page.app, false));
-  if (!is_root) text += common_options(root);
+  text += commands_section(command);
+  text += section("ARGUMENTS", options_of(command, true));
+  text += section("OPTIONS", options_of(command, false));
+  if (&command != &root) text += section("COMMON OPTIONS", common_options(root));
   text +=
       ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n1\nA fault of airtruth, or work that has something to "
       "complain of.\n.TP\n2\nWhat was given is wrong: one line says what, where and what was "
@@ -222,7 +208,7 @@ std::string manual_page(const CLI::App& root, const Page& page) {
       ".SH FILES\n.TP\n.I /usr/share/doc/airtruth/\nThe documents: scene files, catalogues, "
       "truth, measures.\n.TP\n.I /usr/share/airtruth/\nExamples, catalogues, schemas and "
       "clients.\n";
-  return text + see_also(page, is_root);
+  return text + see_also(command);
 }
 
 // The cases of the three functions of the script.
@@ -232,18 +218,16 @@ struct Cases {
   std::string groups;
 };
 
-void add_cases(const CLI::App& root, const Page& page, Cases& cases) {
-  std::vector<const CLI::Option*> options = options_of(*page.app, false);
-  if (page.app != &root)
-    for (const CLI::Option* option : options_of(root, false))
-      if (option->check_lname("quiet") || option->check_lname("json-log"))
-        options.push_back(option);
-  const std::string name = joined(page.path, " ");
+void add_cases(const CLI::App& root, const CLI::App& app, Cases& cases) {
+  std::vector<const CLI::Option*> options = options_of(app, false);
+  if (&app != &root)
+    for (const CLI::Option* option : common_options(root)) options.push_back(option);
+  const std::string name = path_of(app);
   std::vector<std::string> commands;
-  for (const CLI::App* command : commands_of(*page.app)) commands.push_back(command->get_name());
+  for (const CLI::App* command : commands_of(app)) commands.push_back(command->get_name());
   if (!commands.empty())
-    cases.groups += fmt::format(
-        "    {}) commands={} ;;\n", shell_word(name), shell_word(joined(commands, " ")));
+    cases.groups +=
+        fmt::format("    {}) commands={} ;;\n", shell_word(name), shell_word(joined(commands)));
   std::vector<std::string> all;
   for (const CLI::Option* option : options) {
     const Value value = value_of(*option);
@@ -252,11 +236,10 @@ void add_cases(const CLI::App& root, const Page& page, Cases& cases) {
       if (value.name.empty()) continue;
       cases.values += fmt::format("    {}) takes_value=1 choices={} ;;\n",
                                   shell_word(name + " " + spelling),
-                                  shell_word(joined(value.choices, " ")));
+                                  shell_word(joined(value.choices)));
     }
   }
-  cases.words +=
-      fmt::format("    {}) options={} ;;\n", shell_word(name), shell_word(joined(all, " ")));
+  cases.words += fmt::format("    {}) options={} ;;\n", shell_word(name), shell_word(joined(all)));
 }
 
 constexpr const char* kScript =
@@ -328,12 +311,12 @@ void add_describe(CLI::App& app, Context&) {
   command->callback([out, &app] {
     const std::filesystem::path folder = *out;
     std::filesystem::create_directories(folder / "man1");
-    std::vector<Page> pages;
-    add_pages({&app, {app.get_name()}}, pages);
+    std::vector<const CLI::App*> commands;
+    add_commands(app, commands);
     Cases cases;
-    for (const Page& page : pages) {
-      write_file(folder / "man1" / (page_name(page.path) + ".1"), manual_page(app, page));
-      add_cases(app, page, cases);
+    for (const CLI::App* command : commands) {
+      write_file(folder / "man1" / (page_name(*command) + ".1"), manual_page(app, *command));
+      add_cases(app, *command, cases);
     }
     write_file(folder / "airtruth.bash",
                fmt::format(kScript,
