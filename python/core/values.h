@@ -139,7 +139,7 @@ template <std::size_t N>
 py::object python_of(const std::array<double, N>& values) {
   return array_of(std::vector<double>(values.begin(), values.end()), {py::ssize_t{N}});
 }
-// An array of n numbers, or n x N.
+// An array of n numbers, or n x N; a list of n texts.
 template <typename T>
 py::object python_of(std::vector<T> values) {
   const py::ssize_t count = std::ssize(values);
@@ -151,6 +151,12 @@ py::object python_of(const std::vector<std::array<double, N>>& rows) {
   values.reserve(N * rows.size());
   for (const std::array<double, N>& row : rows) values.insert(values.end(), row.begin(), row.end());
   return array_of(std::move(values), {std::ssize(rows), py::ssize_t{N}});
+}
+inline py::object python_of(const std::vector<bool>& flags) {
+  py::array_t<bool> array(std::ssize(flags));
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    array.mutable_at(static_cast<py::ssize_t>(i)) = flags[i];
+  return array;
 }
 inline py::object python_of(const std::vector<std::string>& texts) {
   py::list list;
