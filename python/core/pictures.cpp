@@ -217,7 +217,7 @@ py::tuple picture_tuple(FramePicture picture) {
 
 void bind_pictures(py::module_& core) {
   py::class_<PyRenderer>(core, "Renderer")
-      .def(py::init<const py::object&, const fs::path&, const py::object&, const py::object&>())
+      .def(py::init<py::object, fs::path, py::object, py::object>())
       .def("next", &PyRenderer::next)
       .def("info", &PyRenderer::info)
       .def("lens", &PyRenderer::lens)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <limits>
 
 #include <airtruth/stream.h>
 #include <pybind11/stl.h>
@@ -29,27 +28,6 @@ py::object masks_of(const StreamSample& sample, std::size_t frame) {
     samples.insert(samples.end(), mask.samples.begin(), mask.samples.end());
   return array_of(std::move(samples),
                   {std::ssize(sample.masks[frame]), sample.crop.height, sample.crop.width});
-}
-
-// n x 4: x, y, width, height; NaN for none.
-py::array rows_of_boxes(const std::vector<std::optional<Box>>& boxes) {
-  std::vector<double> rows;
-  for (const std::optional<Box>& box : boxes) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    const Box row = box.value_or(Box{kNone, kNone, kNone, kNone});
-    rows.insert(rows.end(), {row.x, row.y, row.width, row.height});
-  }
-  return array_of(std::move(rows), {std::ssize(boxes), 4});
-}
-
-py::array covered_of(const StreamSample& sample, std::size_t frame) {
-  std::vector<std::optional<Box>> boxes;
-  for (const std::optional<PixelBox>& box : sample.covered[frame]) {
-    boxes.emplace_back();
-    if (box)
-      boxes.back() = {double(box->x), double(box->y), double(box->width), double(box->height)};
-  }
-  return rows_of_boxes(boxes);
 }
 
 // A stream whose samples are made by a thread of its own for Python's main thread, which sees
@@ -90,7 +68,7 @@ class PyStream {
       frames.append(py::make_tuple(picture_tuple(std::move(frame.picture)),
                                    truth_dict(frame.truth),
                                    masks_of(sample, k),
-                                   covered_of(sample, k)));
+                                   column(sample.covered[k], &row_of<PixelBox>)));
     }
     return py::make_tuple(
         text(sample.background), sample.first_frame, sample.weight, python_of(sample.crop), frames);
@@ -122,7 +100,7 @@ class PyStream {
   std::unique_ptr<Stream> stream_;
 };
 
-py::array in_crop_rows(const py::object& boxes, const py::object& crop) {
+py::object in_crop_rows(const py::object& boxes, const py::object& crop) {
   const auto whole = boxes_of(boxes, "boxes");
   const std::vector<double> part = list_of(crop, "crop");
   constexpr double kMost = 1e6;
@@ -131,21 +109,16 @@ py::array in_crop_rows(const py::object& boxes, const py::object& crop) {
   if (part.size() != 4) throw py::value_error("crop is not x, y, width, height");
   const auto whole_number = [&](std::size_t i) { return static_cast<int>(part[i]); };
   const PixelBox pixels{whole_number(0), whole_number(1), whole_number(2), whole_number(3)};
-  std::vector<std::optional<Box>> seen;
-  for (const std::optional<Box>& box : whole)
-    seen.push_back(box ? in_crop(*box, pixels) : std::nullopt);
-  return rows_of_boxes(seen);
+  return column(whole, [&](const std::optional<Box>& box) {
+    return row_of(box ? in_crop(*box, pixels) : std::nullopt);
+  });
 }
 
 }  // namespace
 
 void bind_stream(py::module_& core) {
   py::class_<PyStream>(core, "Stream")
-      .def(py::init<const py::object&,
-                    const fs::path&,
-                    const py::object&,
-                    const py::object&,
-                    const py::object&>())
+      .def(py::init<py::object, fs::path, py::object, py::object, py::object>())
       .def("sample", &PyStream::sample)
       .def("scene", &PyStream::scene)
       .def_property_readonly("is_stopped", &PyStream::is_stopped);

@@ -111,8 +111,7 @@ std::array<double, N> filled(const std::optional<std::array<double, N>>& value) 
 }
 template <typename AnyBox>
 std::array<double, 4> filled(const std::optional<AnyBox>& box) {
-  if (!box) return {kNone, kNone, kNone, kNone};
-  return {double(box->x), double(box->y), double(box->width), double(box->height)};
+  return row_of(box);
 }
 
 // The field of each row as an array.

@@ -124,6 +124,14 @@ py::array array_of(std::vector<T> values, const std::vector<py::ssize_t>& shape)
   return py::array_t<T>(shape, data, owner);
 }
 
+// x, y, width, height; NaN for no box.
+template <typename AnyBox>
+std::array<double, 4> row_of(const std::optional<AnyBox>& box) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!box) return {kNone, kNone, kNone, kNone};
+  return {double(box->x), double(box->y), double(box->width), double(box->height)};
+}
+
 inline py::object python_of(bool value) { return py::bool_(value); }
 inline py::object python_of(double value) { return py::float_(value); }
 inline py::object python_of(int value) { return py::int_(value); }
