@@ -3,8 +3,10 @@
 #include <utility>
 
 #include <airtruth/dataset.h>
+#include <airtruth/truth.h>
 #include <nlohmann/json.hpp>
 
+#include "camera/lens/lens.h"
 #include "dataset/sequences/labels_of_truth.h"
 #include "dataset/sequences/layout.h"
 #include "foundation/base/error.h"
@@ -15,6 +17,10 @@
 
 namespace airtruth {
 namespace {
+
+SequenceTruth public_truth(annotation::Truth truth) {
+  return {public_lens(lens::lens_of(truth.lens)), std::move(truth.frames)};
+}
 
 // The video beside the record: NAME.mp4, NAME.mkv or NAME.avi, or the folder NAME of numbered png.
 fs::path video_in(const fs::path& folder, const std::string& name) {
@@ -74,6 +80,14 @@ Sequence imported(const fs::path& folder) {
 }
 
 }  // namespace
+
+SequenceTruth read_truth(const std::filesystem::path& file) {
+  return public_truth(annotation::read_truth(file));
+}
+
+std::string truth_line(const FrameTruth& truth, const Lens& lens) {
+  return annotation::jsonl_line(truth, lens::facts_of(lens.state().lens));
+}
 
 struct DataSet::State {
   sequences::SequenceFolders folders;

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <airtruth/lens.h>
-#include <airtruth/truth.h>
 
 #include "camera/lens/lens.h"
-#include "labels/annotation/truth.h"
 
-// The public forms of lenses and of the truth of a sequence.
+// The public form of lenses.
 namespace airtruth {
 
 // What a public Lens holds.
@@ -16,7 +14,5 @@ struct Lens::State {
 };
 
 Lens public_lens(const lens::Lens& lens);
-
-SequenceTruth public_truth(annotation::Truth truth);
 
 }  // namespace airtruth
