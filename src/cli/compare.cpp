@@ -3,7 +3,6 @@
 
 #include "cli/commands.h"
 #include "comparison/comparison/comparison.h"
-#include "foundation/base/error.h"
 #include "foundation/run_files/run_files.h"
 
 namespace airtruth::cli {

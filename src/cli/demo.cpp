@@ -4,11 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "foundation/base/error.h"
-#include "foundation/base/files.h"
-#include "scene/scene/scene.h"
 #include "sequence/pipeline/render.h"
-#include "sequence/replay/finished.h"
 
 namespace airtruth::cli {
 namespace {

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
-#include <memory>
 
 #include <fmt/format.h>
 
-#include "camera/focal_length/lens_estimator.h"
-#include "camera/gyro/gyro.h"
 #include "camera/lens/calibration_file.h"
 #include "camera/lens/lens.h"
 #include "camera/motion/estimator.h"

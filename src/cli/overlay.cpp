@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/run_files/run_files.h"
 #include "picture/video/still.h"

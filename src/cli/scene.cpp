@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"
 #include "foundation/run_files/run_files.h"
