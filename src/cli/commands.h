@@ -77,23 +77,6 @@ inline void expect_effect(Context& context,
     });
 }
 
-// --timeout and --start-timeout of programs that answer (process::Limits), which have an effect on
-// such programs alone.
-template <typename Limits>
-void add_limits(CLI::App& command,
-                Limits& limits,
-                const char* of_an_answer,
-                Context& context,
-                const std::function<bool()>& has_effect,
-                const char* without) {
-  const CLI::Range range(0.001, 86'400.0);
-  command.add_option("--timeout", limits.answer_s, of_an_answer)->check(range);
-  command.add_option("--start-timeout", limits.start_s)
-      ->description("Longest that it may take to start, s (default: 30)")
-      ->check(range);
-  expect_effect(context, command, {"--timeout", "--start-timeout"}, without, has_effect);
-}
-
 // Shows the warnings of a stage and its progress, and lets an interrupt stop it.
 template <typename Options>
 void follow(Options& options, Context& context, const char* stage, const char* unit = "frames") {
@@ -103,16 +86,6 @@ void follow(Options& options, Context& context, const char* stage, const char* u
   options.progress = [&console, stage, unit](std::int64_t done, std::int64_t total) {
     console.progress(stage, done, total, unit);
   };
-}
-
-// How fast trackers or detectors were, what an earlier call had made, and what they broke off.
-template <typename Summary>
-std::string rest_of(const Summary& summary) {
-  const double rate =
-      summary.seconds > 0 ? static_cast<double>(summary.frames) / summary.seconds : 0;
-  return (rate > 0 ? fmt::format(" at {:.0f} frames/s", rate) : "") +
-         (summary.kept > 0 ? fmt::format(", {} were there", summary.kept) : "") +
-         (summary.broken > 0 ? fmt::format(", {} broken off", summary.broken) : "");
 }
 
 // --jobs, of what works on several sequences or files at a time.
