@@ -26,18 +26,17 @@ py::object mask_dict(const std::optional<exchange::PixelMask>& mask) {
 
 py::dict label_dict(const exchange::Label& label) {
   py::dict dict;
-  const IntoDict into{dict};
-  into("track", label.track);
-  into("category", label.category);
-  into("box_px", label.box_px);
-  into("visible", label.visible);
-  into("occluded", label.occluded);
-  into("truncated", label.truncated);
-  into("range_m", label.range_m);
-  into("above_horizon", label.above_horizon);
-  into("contrast_to_noise", label.contrast_to_noise);
-  into("area_px", label.area_px);
-  into("object_class", label.object_class);
+  dict["track"] = label.track;
+  dict["category"] = text(label.category);
+  dict["box_px"] = python_of(label.box_px);
+  dict["visible"] = label.visible;
+  dict["occluded"] = label.occluded;
+  dict["truncated"] = label.truncated;
+  dict["range_m"] = label.range_m;
+  dict["above_horizon"] = label.above_horizon;
+  dict["contrast_to_noise"] = label.contrast_to_noise;
+  dict["area_px"] = label.area_px;
+  dict["object_class"] = text(label.object_class);
   dict["mask"] = mask_dict(label.mask);
   return dict;
 }
@@ -47,10 +46,9 @@ py::dict clip_dict(const Clip& clip) {
   py::list frames;
   for (const exchange::LabelledFrame& frame : clip.frames) {
     py::dict one;
-    const IntoDict into{one};
-    into("frame", frame.frame);
-    into("time_s", frame.time_s);
-    into("picture", frame.picture);
+    one["frame"] = frame.frame;
+    one["time_s"] = frame.time_s;
+    one["picture"] = text(frame.picture);
     py::list labels;
     for (const exchange::Label& label : frame.labels) labels.append(label_dict(label));
     one["labels"] = labels;

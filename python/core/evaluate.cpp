@@ -37,46 +37,45 @@ std::vector<FramePair> pairs_of(const py::object& truth, const py::object& answe
   return pairs;
 }
 
-// visit(name, value) for each field of a score; `S` is Score or const Score.
-template <typename Visit, typename S>
-void each_field(Visit&& visit, S& s) {
-  visit("frames", s.frames);
-  visit("counted", s.counted);
-  visit("x_mean_px", s.x_mean_px);
-  visit("x_rmse_px", s.x_rmse_px);
-  visit("x_most_px", s.x_most_px);
-  visit("y_mean_px", s.y_mean_px);
-  visit("y_rmse_px", s.y_rmse_px);
-  visit("y_most_px", s.y_most_px);
-  visit("centre_mean_px", s.centre_mean_px);
-  visit("success", s.success);
-  visit("precision", s.precision);
-  visit("auc", s.auc);
-  visit("precision_20px", s.precision_20px);
-  visit("normalised", s.normalised);
-  visit("normalised_auc", s.normalised_auc);
-  visit("average_overlap", s.average_overlap);
-  visit("success_50", s.success_50);
-  visit("success_75", s.success_75);
-  visit("frames_per_second", s.frames_per_second);
-  visit("frames_per_second_median", s.frames_per_second_median);
-  visit("counted_after_first", s.counted_after_first);
+template <typename Visit>
+void each_field(const Visit& visit) {
+  visit("frames", &Score::frames);
+  visit("counted", &Score::counted);
+  visit("x_mean_px", &Score::x_mean_px);
+  visit("x_rmse_px", &Score::x_rmse_px);
+  visit("x_most_px", &Score::x_most_px);
+  visit("y_mean_px", &Score::y_mean_px);
+  visit("y_rmse_px", &Score::y_rmse_px);
+  visit("y_most_px", &Score::y_most_px);
+  visit("centre_mean_px", &Score::centre_mean_px);
+  visit("success", &Score::success);
+  visit("precision", &Score::precision);
+  visit("auc", &Score::auc);
+  visit("precision_20px", &Score::precision_20px);
+  visit("normalised", &Score::normalised);
+  visit("normalised_auc", &Score::normalised_auc);
+  visit("average_overlap", &Score::average_overlap);
+  visit("success_50", &Score::success_50);
+  visit("success_75", &Score::success_75);
+  visit("frames_per_second", &Score::frames_per_second);
+  visit("frames_per_second_median", &Score::frames_per_second_median);
+  visit("counted_after_first", &Score::counted_after_first);
 }
 
 py::dict score_dict(const Score& score) {
   py::dict dict;
-  each_field(IntoDict{dict}, score);
+  each_field([&](const char* name, auto field) { dict[name] = python_of(score.*field); });
   return dict;
 }
 
-// The fields of an airtruth.evaluate.Score.
-struct FromPython {
-  const py::handle& object;
-  template <typename T>
-  void operator()(const char* name, T& value) const {
-    value = object.attr(name).cast<T>();
-  }
-};
+// From an airtruth.evaluate.Score.
+Score score_from(const py::handle& fields) {
+  Score score;
+  each_field([&](const char* name, auto field) {
+    score.*field = fields.attr(name).cast<std::remove_reference_t<decltype(score.*field)>>();
+  });
+  return score;
+}
 
 py::dict score_of(const py::object& truth,
                   const py::object& answers,
@@ -94,7 +93,7 @@ py::dict score_of(const py::object& truth,
 
 py::dict mean(const py::list& scores) {
   std::vector<Score> values;
-  for (const py::handle& one : scores) each_field(FromPython{one}, values.emplace_back());
+  for (const py::handle& one : scores) values.push_back(score_from(one));
   return score_dict(mean_of(values));
 }
 

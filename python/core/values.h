@@ -59,13 +59,6 @@ int size_of(const py::handle& value, const char* what);
 [[noreturn]] void refuse_type(const py::handle& value, const std::string& what, const char* kind);
 
 template <typename T>
-struct OptionalValue : std::false_type {};
-template <typename T>
-struct OptionalValue<std::optional<T>> : std::true_type {
-  using Type = T;
-};
-
-template <typename T>
 constexpr const char* kind_of() {
   if constexpr (std::is_same_v<T, double>) return "a number";
   if constexpr (std::is_same_v<T, std::string>) return "a text";
@@ -81,9 +74,9 @@ template <typename T>
 T argument(const py::object& value, const char* what) {
   if constexpr (std::is_same_v<T, py::object>) {
     return value;
-  } else if constexpr (OptionalValue<T>::value) {
+  } else if constexpr (requires(T optional) { optional.has_value(); }) {
     if (value.is_none()) return std::nullopt;
-    return argument<typename OptionalValue<T>::Type>(value, what);
+    return argument<typename T::value_type>(value, what);
   } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
     return whole_of<T>(value, what, std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
   } else {
@@ -191,15 +184,6 @@ struct FromKeywords {
   template <typename T>
   void operator()(const char* name, T& value) const {
     value = argument<T>(given[name], name);
-  }
-};
-
-// Fills a dict: visit(name, value).
-struct IntoDict {
-  py::dict& dict;
-  template <typename T>
-  void operator()(const char* name, const T& value) const {
-    dict[name] = python_of(value);
   }
 };
 
