@@ -3,13 +3,13 @@
 #include <set>
 
 #include <airtruth/aot.h>
+#include <airtruth/average_precision.h>
 #include <airtruth/froc.h>
 #include <airtruth/track_measures.h>
 #include <pybind11/stl.h>
 
 #include "bindings.h"
 #include "calls.h"
-#include "evaluated.h"
 #include "values.h"
 
 namespace airtruth::python {
@@ -17,6 +17,104 @@ namespace {
 
 using namespace evaluation;
 using namespace py::literals;
+
+// ValueError for a distance that is negative or not finite.
+void checked_centre(double centre_px) {
+  if (!(centre_px >= 0) || std::isinf(centre_px))
+    throw py::value_error("centre_px is no finite number of 0 or more");
+}
+
+// A number for each of `count` boxes.
+std::vector<double> beside(const py::handle& value, const char* what, std::size_t count) {
+  std::vector<double> numbers = list_of(value, what);
+  expect_equal(count, numbers.size(), what);
+  return numbers;
+}
+
+// Calls add(box, i) for each row that is a box.
+template <typename Add>
+void each_box(const std::vector<std::optional<Box>>& boxes, const Add& add) {
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (boxes[i]) add(*boxes[i], i);
+}
+
+// Truths as flagged in `ignored`, and after them the regions.
+std::vector<LabelledBox> labelled_boxes(const std::vector<std::optional<Box>>& truths,
+                                        const py::handle& ignored,
+                                        const py::handle& regions) {
+  const std::vector<double> flags = beside(ignored, "truth and ignored", truths.size());
+  std::vector<LabelledBox> labelled;
+  each_box(truths, [&](const Box& box, std::size_t i) {
+    labelled.push_back({.box_px = box, .is_ignored = flags[i] != 0});
+  });
+  each_box(boxes_of(regions, "regions"), [&](const Box& box, std::size_t) {
+    labelled.push_back({.box_px = box, .is_region = true});
+  });
+  return labelled;
+}
+
+// An image from (truth n x 4, ignored n, regions k x 4, detections m x 4, scores m).
+ScoredImage scored_image_of(const py::handle& item) {
+  const auto [truth, ignored, regions, detections, scores] =
+      item.cast<std::tuple<py::object, py::object, py::object, py::object, py::object>>();
+  ScoredImage image{labelled_boxes(boxes_of(truth, "truth"), ignored, regions), {}};
+  const auto boxes = boxes_of(detections, "detections");
+  const std::vector<double> numbers = finite_list_of(scores, "scores");
+  expect_equal(boxes.size(), numbers.size(), "detections and scores");
+  each_box(boxes, [&](const Box& box, std::size_t i) {
+    image.detections.push_back({box, numbers[i]});
+  });
+  return image;
+}
+
+// The images of each sequence, as image_of() reads one of them; signals are seen.
+template <typename Image>
+auto sequences_of(const py::list& sequences, const Image& image_of) {
+  std::vector<std::vector<decltype(image_of(py::handle()))>> result;
+  for (const py::handle& sequence : sequences) {
+    result.emplace_back();
+    for (const py::handle& image : sequence.cast<py::list>()) {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      result.back().push_back(image_of(image));
+    }
+  }
+  return result;
+}
+
+py::object curve_dict(const std::optional<PrecisionCurve>& curve) {
+  if (!curve) return py::none();
+  return py::dict("precision"_a = python_of(curve->precision),
+                  "score"_a = python_of(curve->score),
+                  "average_precision"_a = curve->average_precision,
+                  "recall"_a = curve->recall,
+                  "truths"_a = curve->truths);
+}
+
+// `sequences`: the images of each.
+py::dict precision_dict(const py::list& sequences, double centre_px) {
+  checked_centre(centre_px);
+  const AveragePrecision ap =
+      left_alone([images = sequences_of(sequences, &scored_image_of), centre_px] {
+        return average_precision(images, centre_px);
+      });
+  return py::dict("ap"_a = ap.ap,
+                  "ap_50"_a = ap.ap_50,
+                  "ap_75"_a = ap.ap_75,
+                  "ap_small"_a = ap.ap_small,
+                  "ap_medium"_a = ap.ap_medium,
+                  "ap_large"_a = ap.ap_large,
+                  "ar_1"_a = ap.ar_1,
+                  "ar_10"_a = ap.ar_10,
+                  "ar_100"_a = ap.ar_100,
+                  "ar_small"_a = ap.ar_small,
+                  "ar_medium"_a = ap.ar_medium,
+                  "ar_large"_a = ap.ar_large,
+                  "ap_centre"_a = ap.ap_centre,
+                  "ap_50_interval"_a = python_of(ap.ap_50_interval),
+                  "ap_centre_interval"_a = python_of(ap.ap_centre_interval),
+                  "curve_50"_a = curve_dict(ap.curve_50),
+                  "curve_centre"_a = curve_dict(ap.curve_centre));
+}
 
 // The number of a track; empty for NaN.
 std::optional<std::int64_t> track_of(double number, const char* what) {
@@ -246,6 +344,7 @@ py::tuple ranks(const py::list& sequences, std::optional<double> rate_hz, double
 }  // namespace
 
 void bind_detectors(py::module_& core) {
+  core.def("average_precision", named(&precision_dict, "sequences", "centre_px"));
   core.def("froc", named(&froc_dict, "sequences", "rate_hz", "centre_px"));
   core.def("claims_aircraft",
            [](const std::string& category) { return claims_aircraft(category); });

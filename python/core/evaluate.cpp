@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 
-#include <airtruth/average_precision.h>
 #include <airtruth/metrics.h>
 #include <airtruth/statistics.h>
 #include <airtruth/vot.h>
@@ -10,7 +8,6 @@
 
 #include "bindings.h"
 #include "calls.h"
-#include "evaluated.h"
 #include "values.h"
 
 namespace airtruth::python {
@@ -107,19 +104,14 @@ py::object overlaps(const py::object& a, const py::object& b) {
   return python_of(std::move(values));
 }
 
-py::object interval_tuple(const std::optional<Interval>& interval) {
-  if (!interval) return py::none();
-  return py::make_tuple(interval->low, interval->high);
-}
-
 py::object bootstrap(const py::object& values, const py::object& weights) {
   const std::vector<double> numbers = finite_list_of(values, "values");
-  if (weights.is_none()) return interval_tuple(left_alone([=] { return bootstrap_mean(numbers); }));
+  if (weights.is_none()) return python_of(left_alone([=] { return bootstrap_mean(numbers); }));
   const std::vector<double> shares = finite_list_of(weights, "weights");
   expect_equal(numbers.size(), shares.size(), "values and weights");
   for (const double share : shares)
     if (share <= 0) throw py::value_error("weights holds a number that is not above 0");
-  return interval_tuple(left_alone([=] { return bootstrap_mean(numbers, shares); }));
+  return python_of(left_alone([=] { return bootstrap_mean(numbers, shares); }));
 }
 
 py::dict paired_dict(const py::object& a, const py::object& b) {
@@ -128,7 +120,7 @@ py::dict paired_dict(const py::object& a, const py::object& b) {
   expect_equal(first.size(), second.size(), "a and b");
   const Paired result = left_alone([=] { return paired(first, second); });
   return py::dict("difference"_a = first.empty() ? std::nullopt : std::optional(result.difference),
-                  "interval"_a = interval_tuple(result.interval),
+                  "interval"_a = python_of(result.interval),
                   "p_value"_a = result.p_value,
                   "wins"_a = result.wins,
                   "losses"_a = result.losses,
@@ -140,41 +132,6 @@ std::optional<double> tau(const py::object& a, const py::object& b) {
   const std::vector<double> second = finite_list_of(b, "b");
   expect_equal(first.size(), second.size(), "a and b");
   return left_alone([=] { return kendall_tau(first, second); });
-}
-
-py::object curve_dict(const std::optional<PrecisionCurve>& curve) {
-  if (!curve) return py::none();
-  return py::dict("precision"_a = python_of(curve->precision),
-                  "score"_a = python_of(curve->score),
-                  "average_precision"_a = curve->average_precision,
-                  "recall"_a = curve->recall,
-                  "truths"_a = curve->truths);
-}
-
-// `sequences`: the images of each.
-py::dict precision_dict(const py::list& sequences, double centre_px) {
-  checked_centre(centre_px);
-  const AveragePrecision ap =
-      left_alone([images = sequences_of(sequences, &scored_image_of), centre_px] {
-        return average_precision(images, centre_px);
-      });
-  return py::dict("ap"_a = ap.ap,
-                  "ap_50"_a = ap.ap_50,
-                  "ap_75"_a = ap.ap_75,
-                  "ap_small"_a = ap.ap_small,
-                  "ap_medium"_a = ap.ap_medium,
-                  "ap_large"_a = ap.ap_large,
-                  "ar_1"_a = ap.ar_1,
-                  "ar_10"_a = ap.ar_10,
-                  "ar_100"_a = ap.ar_100,
-                  "ar_small"_a = ap.ar_small,
-                  "ar_medium"_a = ap.ar_medium,
-                  "ar_large"_a = ap.ar_large,
-                  "ap_centre"_a = ap.ap_centre,
-                  "ap_50_interval"_a = interval_tuple(ap.ap_50_interval),
-                  "ap_centre_interval"_a = interval_tuple(ap.ap_centre_interval),
-                  "curve_50"_a = curve_dict(ap.curve_50),
-                  "curve_centre"_a = curve_dict(ap.curve_centre));
 }
 
 VotTruth vot_truth(const py::object& truth, const Size& size) {
@@ -289,50 +246,6 @@ std::pair<int, int> lengths_range(const py::sequence& lengths) {
 
 }  // namespace
 
-void expect_equal(std::size_t a, std::size_t b, const char* what) {
-  if (a != b)
-    throw py::value_error(std::string(what) + ": " + std::to_string(a) + " and " +
-                          std::to_string(b) + " rows; expected as many");
-}
-
-void checked_centre(double centre_px) {
-  if (!(centre_px >= 0) || std::isinf(centre_px))
-    throw py::value_error("centre_px is no finite number of 0 or more");
-}
-
-std::vector<double> beside(const py::handle& value, const char* what, std::size_t count) {
-  std::vector<double> numbers = list_of(value, what);
-  expect_equal(count, numbers.size(), what);
-  return numbers;
-}
-
-std::vector<LabelledBox> labelled_boxes(const std::vector<std::optional<Box>>& truths,
-                                        const py::handle& ignored,
-                                        const py::handle& regions) {
-  const std::vector<double> flags = beside(ignored, "truth and ignored", truths.size());
-  std::vector<LabelledBox> labelled;
-  each_box(truths, [&](const Box& box, std::size_t i) {
-    labelled.push_back({.box_px = box, .is_ignored = flags[i] != 0});
-  });
-  each_box(boxes_of(regions, "regions"), [&](const Box& box, std::size_t) {
-    labelled.push_back({.box_px = box, .is_region = true});
-  });
-  return labelled;
-}
-
-evaluation::ScoredImage scored_image_of(const py::handle& item) {
-  const auto [truth, ignored, regions, detections, scores] =
-      item.cast<std::tuple<py::object, py::object, py::object, py::object, py::object>>();
-  ScoredImage image{labelled_boxes(boxes_of(truth, "truth"), ignored, regions), {}};
-  const auto boxes = boxes_of(detections, "detections");
-  const std::vector<double> numbers = finite_list_of(scores, "scores");
-  expect_equal(boxes.size(), numbers.size(), "detections and scores");
-  each_box(boxes, [&](const Box& box, std::size_t i) {
-    image.detections.push_back({box, numbers[i]});
-  });
-  return image;
-}
-
 void bind_evaluate(py::module_& core) {
   core.def("score", named(&score_of, "truth", "answers", "seconds", "size"));
   core.def("mean_of", named(&mean, "scores"));
@@ -340,7 +253,6 @@ void bind_evaluate(py::module_& core) {
     return first_loss(pairs_of(truth, answers));
   });
   core.def("overlap", &overlaps);
-  core.def("average_precision", named(&precision_dict, "sequences", "centre_px"));
   core.def("bootstrap_mean", &bootstrap);
   core.def("paired", &paired_dict);
   core.def("kendall_tau", &tau);

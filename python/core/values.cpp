@@ -75,6 +75,12 @@ std::vector<double> finite_list_of(const py::handle& value, const std::string& w
   return values;
 }
 
+void expect_equal(std::size_t a, std::size_t b, const char* what) {
+  if (a != b)
+    throw py::value_error(std::string(what) + ": " + std::to_string(a) + " and " +
+                          std::to_string(b) + " rows; expected as many");
+}
+
 void refuse_type(const py::handle& value, const std::string& what, const char* kind) {
   throw py::type_error(what + " is of the type " +
                        std::string(py::str(py::type::handle_of(value).attr("__name__"))) +

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <airtruth/box.h>
+#include <airtruth/statistics.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
@@ -37,6 +38,9 @@ std::vector<std::optional<Box>> boxes_of(const py::handle& value, const std::str
 void expect_finite(const std::vector<double>& numbers, std::size_t i, const std::string& what);
 // As list_of(), of finite numbers.
 std::vector<double> finite_list_of(const py::handle& value, const std::string& what);
+
+// ValueError where two arguments differ in their number of rows.
+void expect_equal(std::size_t a, std::size_t b, const char* what);
 
 // A whole number as a Python int. Throws TypeError where the value is none; `what` names it.
 py::int_ index_of(const py::handle& value, const std::string& what);
@@ -135,6 +139,9 @@ inline py::object python_of(const Box& box) {
 }
 inline py::object python_of(const PixelBox& box) {
   return array_of<std::int64_t>({box.x, box.y, box.width, box.height}, {4});
+}
+inline py::object python_of(const evaluation::Interval& interval) {
+  return py::make_tuple(interval.low, interval.high);
 }
 template <std::size_t N>
 py::object python_of(const std::array<double, N>& values) {
