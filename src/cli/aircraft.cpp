@@ -22,18 +22,13 @@ std::string published_words(const std::string& name) {
       "{}: span {:.2f} m, length {:.2f} m", size->type, size->span_m, size->length_m);
 }
 
-void list_left_out(const std::string& filter, Context& context) {
-  for (const auto& [name, reason] : fleet::expect_left_out_named_like(filter))
-    context.console().print(fmt::format("{:<40} {}\n", name, reason));
-}
-
-void list_names(const std::string& filter, bool sizes, Context& context) {
-  for (const std::string& name : fleet::expect_aircraft_named_like(filter))
-    if (sizes)
-      context.console().print(fmt::format("{:<40} {}\n", name, published_words(name)));
-    else
-      context.console().print(name + "\n");
-}
+struct ListArguments {
+  std::string filter;
+  std::string sheet;
+  bool sizes = false;
+  bool is_left_out = false;
+  bool overwrite = false;
+};
 
 // Returns the folder of a name, which is the aircraft's type.
 std::string type_of(const std::string& name) { return name.substr(0, name.find('/')); }
@@ -46,42 +41,36 @@ std::vector<std::string> one_of_each_type(const std::vector<std::string>& names)
   return first;
 }
 
-void draw_sheet(const std::string& filter,
-                const std::string& out,
-                bool overwrite,
-                Context& context) {
-  video::check_still_output(out, overwrite);
+void draw_sheet(const ListArguments& arguments, Context& context) {
+  video::check_still_output(arguments.sheet, arguments.overwrite);
   // Number of tiles side by side: a display choice.
   constexpr int kColumns = 10;
-  Console& console = context.console();
   model::LoadOptions load;
   load.stop = context.stop;
   std::vector<drawing::NamedPicture> tiles;
   const std::vector<std::string> names =
-      one_of_each_type(fleet::expect_aircraft_named_like(filter));
+      one_of_each_type(fleet::expect_aircraft_named_like(arguments.filter));
   for (const std::string& name : names) {
     if (context.stop.stop_requested()) throw Interrupted();
     tiles.push_back({type_of(name), demo::aircraft_tile(fleet::load_aircraft(name, load, {}))});
   }
-  video::write_still(out, drawing::tiled(fmt::format("{} types", names.size()), tiles, kColumns));
-  console.result(fmt::format("{}: one aircraft of each of {} types", out, names.size()));
+  video::write_still(arguments.sheet,
+                     drawing::tiled(fmt::format("{} types", names.size()), tiles, kColumns));
+  context.console().result(
+      fmt::format("{}: one aircraft of each of {} types", arguments.sheet, names.size()));
 }
 
-struct ListArguments {
-  std::string filter;
-  std::string sheet;
-  bool sizes = false;
-  bool is_left_out = false;
-  bool overwrite = false;
-};
-
 void list(const ListArguments& arguments, Context& context) {
-  if (!arguments.sheet.empty())
-    draw_sheet(arguments.filter, arguments.sheet, arguments.overwrite, context);
-  else if (arguments.is_left_out)
-    list_left_out(arguments.filter, context);
-  else
-    list_names(arguments.filter, arguments.sizes, context);
+  Console& console = context.console();
+  if (!arguments.sheet.empty()) return draw_sheet(arguments, context);
+  if (arguments.is_left_out) {
+    for (const auto& [name, reason] : fleet::expect_left_out_named_like(arguments.filter))
+      console.print(fmt::format("{:<40} {}\n", name, reason));
+    return;
+  }
+  for (const std::string& name : fleet::expect_aircraft_named_like(arguments.filter))
+    console.print(arguments.sizes ? fmt::format("{:<40} {}\n", name, published_words(name))
+                                  : name + "\n");
 }
 
 struct ShowArguments {
@@ -93,18 +82,13 @@ struct ShowArguments {
   bool overwrite = false;
 };
 
-model::LoadOptions load_options(const ShowArguments& arguments, const Context& context) {
-  model::LoadOptions options;
-  options.stop = context.stop;
-  options.axes = model::stated_axes(arguments.forward, arguments.up, arguments.scale);
-  return options;
-}
-
 void show(const ShowArguments& arguments, Context& context) {
   video::check_still_output(arguments.out, arguments.overwrite);
   Console& console = context.console();
-  const fleet::Aircraft loaded =
-      fleet::load_aircraft(arguments.name, load_options(arguments, context), console.warn());
+  model::LoadOptions options;
+  options.stop = context.stop;
+  options.axes = model::stated_axes(arguments.forward, arguments.up, arguments.scale);
+  const fleet::Aircraft loaded = fleet::load_aircraft(arguments.name, options, console.warn());
   RunFiles files;
   for (const auto& source : loaded.sources) files.reads(source);
   files.writes(arguments.out, arguments.overwrite).check();
