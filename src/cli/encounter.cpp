@@ -57,6 +57,12 @@ std::string words_of(const Sample& arguments, const sets::SetSummary& summary, d
   return words;
 }
 
+// Of weights that are not all 1. Files of waypoints hold no velocities either.
+void warn_of_weights(tracks_file::TracksFormat format, const std::string& out, Console& console) {
+  if (format != tracks_file::TracksFormat::kCsv)
+    console.warning(out + ": a file of this format holds no weights; .csv does");
+}
+
 void sample(const Sample& arguments, Context& context) {
   RunFiles files;
   if (!arguments.is_geometric()) files.reads(arguments.model);
@@ -74,9 +80,8 @@ void sample(const Sample& arguments, Context& context) {
     summary = sets::write_set(at, set.draw, options);
   });
   files.commit();
-  if (!arguments.own.empty() && !arguments.is_geometric() &&
-      format != tracks_file::TracksFormat::kCsv)
-    console.warning(arguments.out + ": a file of this format holds no weights; .csv does");
+  if (!arguments.own.empty() && !arguments.is_geometric())
+    warn_of_weights(format, arguments.out, console);
   console.result(words_of(arguments, summary, set.share));
 }
 
@@ -156,19 +161,6 @@ struct Convert {
   bool overwrite = false;
 };
 
-// Files of waypoints hold neither weights nor velocities; other formats than CSV no weights.
-void warn_of_losses(const std::vector<track::Encounter>& encounters,
-                    tracks_file::TracksFormat format,
-                    const std::string& out,
-                    Console& console) {
-  if (format == tracks_file::TracksFormat::kCsv) return;
-  for (const track::Encounter& each : encounters)
-    if (each.weight != 1) {
-      console.warning(out + ": a file of this format holds no weights; .csv does");
-      return;
-    }
-}
-
 void convert(const Convert& arguments, Context& context) {
   RunFiles files;
   files.reads(arguments.in).writes(arguments.out, arguments.overwrite);
@@ -185,7 +177,8 @@ void convert(const Convert& arguments, Context& context) {
   if (context.stop.stop_requested()) throw Interrupted();
   const std::size_t count = encounters.size();
   encounters = tracks_file::fitted(std::move(encounters), format, arguments.out);
-  warn_of_losses(encounters, format, arguments.out, console);
+  if (std::ranges::any_of(encounters, [](const auto& each) { return each.weight != 1; }))
+    warn_of_weights(format, arguments.out, console);
   files.write(arguments.out, [&](const std::filesystem::path& at) {
     tracks_file::write_encounters(at, encounters);
   });

@@ -89,12 +89,8 @@ std::string description(const FlightLog& log) {
   return text;
 }
 
-struct LogShowArguments {
-  std::string file;
-};
-
-void show_log(const LogShowArguments& arguments, Context& context) {
-  context.console().result(description(setup::read_log(arguments.file)));
+void show_log(const std::string& file, Context& context) {
+  context.console().result(description(setup::read_log(file)));
 }
 
 struct AlignArguments {
@@ -163,9 +159,9 @@ void align(const AlignArguments& arguments, Context& context) {
 }
 
 void add_log_show(CLI::App& group, Context& context) {
-  auto [command, arguments] = add_command(group, context, "show", show_log);
+  auto [command, file] = add_command(group, context, "show", show_log);
   command->description("Say what is in a flight log");
-  command->add_option("FILE", arguments->file)
+  command->add_option("FILE", *file)
       ->description("DJI .srt, GoPro .mp4, PX4 .ulg, ArduPilot .bin, .gpx or .csv")
       ->required();
 }

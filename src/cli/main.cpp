@@ -56,12 +56,6 @@ const CLI::App& named_command(const CLI::App& app) {
   return parsed.empty() ? app : named_command(*parsed.front());
 }
 
-std::vector<std::string> command_names(const CLI::App& command) {
-  std::vector<std::string> names;
-  for (const CLI::App* one : command.get_subcommands({})) names.push_back(one->get_name());
-  return names;
-}
-
 std::vector<std::string> option_names(const CLI::App& app, const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::App* one : {&app, &command})
@@ -80,7 +74,8 @@ std::string unknown_word(const CLI::App& app) {
   const CLI::App& command = named_command(app);
   if (word.starts_with("-"))
     return "there is no option '" + word + "'" + did_you_mean(word, option_names(app, command));
-  const std::vector<std::string> names = command_names(command);
+  std::vector<std::string> names;
+  for (const CLI::App* one : command.get_subcommands({})) names.push_back(one->get_name());
   return names.empty() ? "" : "there is no command '" + word + "'" + did_you_mean(word, names);
 }
 
