@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <airtruth/picture.h>
 #include <airtruth/truth.h>
 #include <pybind11/pybind11.h>
 
@@ -13,7 +12,6 @@ namespace py = pybind11;
 
 void bind_lens(py::module_& core);
 void bind_pictures(py::module_& core);
-void bind_stream(py::module_& core);
 void bind_dataset(py::module_& core);
 void bind_evaluate(py::module_& core);
 void bind_clips(py::module_& core);
@@ -26,7 +24,5 @@ py::dict truth_dict(const FrameTruth& truth);
 py::dict intruder_columns(const std::vector<FrameTruth>& frames);
 // A column for each field of a frame but its intruders.
 py::dict frame_columns(const std::vector<FrameTruth>& frames);
-// (planes, pixel_format, matrix, is_full_range); the planes' samples are moved into the arrays.
-py::tuple picture_tuple(FramePicture picture);
 
 }  // namespace airtruth::python

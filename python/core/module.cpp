@@ -39,7 +39,6 @@ PYBIND11_MODULE(_core, core) {
   watch_end_of_interpreter();
   bind_lens(core);
   bind_pictures(core);
-  bind_stream(core);
   bind_dataset(core);
   bind_evaluate(core);
   bind_clips(core);
