@@ -23,8 +23,8 @@ namespace airtruth::air {
 // the wavelength dependence of haze (Angstrom 1929: extinction is proportional to the wavelength to
 // a power between 0 and -2). The results are means over the parameters that remain possible. Errors
 // include a tenth of the value: that is the scatter over virtual flights, whose ground does not
-// look the same from all directions. Empty if the error of the extinction is more than a third of
-// its value, and without any sky.
+// look the same from all directions. Empty if the error of the extinction is more than 0.3 of its
+// value, and without any sky.
 struct SeenAgain {
   ColourEstimate extinction_per_km;
   // Airlight at the horizon ahead of the camera.
