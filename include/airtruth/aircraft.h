@@ -71,8 +71,8 @@ struct AircraftModel {
 };
 
 // Reads an aircraft: a name of the catalogue, or a model file (.ac .obj .3ds .stl .ply .dae .gltf
-// .glb .fbx), which a confined process reads. Throws Error for an unknown name, with the nearest
-// ones, and for a file that cannot be read.
+// .glb .fbx, FlightGear's .xml), which a confined process reads. Throws Error for an unknown name,
+// with the nearest ones, and for a file that cannot be read.
 AIRTRUTH_API AircraftModel show_aircraft(const std::string& name, const ShowOptions& options = {});
 
 }  // namespace airtruth

@@ -51,8 +51,8 @@ class AIRTRUTH_API Lens {
                       int width,
                       int height,
                       double max_angle_rad = std::numbers::pi);
-  // A calibration: a Gyroflow lens profile (.json) or an OpenCV calibration (.yml, .yaml, .xml),
-  // scaled to this size of the image. Throws Error with file and line; docs/lenses.md.
+  // A calibration file (docs/lenses.md), scaled to this size of the image. Throws Error with file
+  // and line.
   static Lens from_file(const std::filesystem::path& calibration, int width, int height);
 
   // The pixel that shows a point. Empty where the model has no image: behind a pinhole, beyond the

@@ -61,9 +61,9 @@ def left_out_aircraft(filter: str = "") -> Dict[str, str]:
 
 
 def show_aircraft(name: Path, *, forward: str = "", up: str = "", scale: float = 0) -> AircraftModel:
-    """Reads one aircraft: a name of aircraft(), or a model file (.ac .obj .3ds .stl .ply .dae .gltf .glb .fbx), which a confined
-    process reads. Of a model file that does not state them, `forward` and `up` are the axes (x, -y, ...) that are the nose and up, and
-    `scale` is the metres per unit.
+    """Reads one aircraft: a name of aircraft(), or a model file (.ac .obj .3ds .stl .ply .dae .gltf .glb .fbx, FlightGear's .xml),
+    which a confined process reads. Of a model file that does not state them, `forward` and `up` are the axes (x, -y, ...) that are
+    the nose and up, and `scale` is the metres per unit.
 
     >>> news = airtruth.show_aircraft("c172/news")
     >>> round(news.span_m, 2), round(news.catalogue_scale, 3), len(news.liveries)

@@ -79,8 +79,7 @@ class Lens:
 
     @classmethod
     def from_file(cls, calibration: Path, width: int, height: int) -> Lens:
-        """A calibration of Gyroflow (.json) or OpenCV (.yml, .yaml, .xml), scaled to an image of that size (docs/lenses.md).
-        airtruth.Error with file and line.
+        """A calibration file (docs/lenses.md), scaled to an image of that size. airtruth.Error with file and line.
 
         >>> airtruth.Lens.from_file("calibration.yml", 640, 480).model
         'brown_conrady'

@@ -139,7 +139,7 @@ void add_show(CLI::App& group, Context& context) {
   command->add_option("NAME", arguments->name)
       ->description(
           "A name of `aircraft list`, or a model file (.ac .obj .3ds .stl .ply .dae .gltf .glb "
-          ".fbx)")
+          ".fbx, FlightGear's .xml)")
       ->required();
   command->add_option("-o,--out", arguments->out, "Draw a contact sheet here (.png or .jpg)");
   command->add_flag("--overwrite", arguments->overwrite, "Replace the picture if it exists");

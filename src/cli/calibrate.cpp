@@ -156,7 +156,7 @@ void find_mask(const MaskArguments& arguments, Context& context) {
 // The options that say what a clip alone does not show.
 void add_known_facts(CLI::App* command, CalibrateArguments& arguments) {
   command->add_option(
-      "--lens", arguments.lens, "Calibration (OpenCV or Gyroflow): for sun and extinction");
+      "--lens", arguments.lens, "Calibration file (docs/lenses.md): for sun and extinction");
   command->add_option("--mask", arguments.mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("--altitude", arguments.altitude_m)
       ->description("Height of the camera above the ground, m: for the extinction")

@@ -138,7 +138,7 @@ void add_lens(CLI::App& app, Context& context) {
 
   auto [crop_command, cut] = add_command(*group, context, "crop", crop);
   crop_command->description("Write the lens of a picture that is the middle of the calibrated one");
-  crop_command->add_option("CALIBRATION", cut->file, "OpenCV or Gyroflow calibration")->required();
+  crop_command->add_option("CALIBRATION", cut->file, "Calibration (docs/lenses.md)")->required();
   crop_command
       ->add_option("--size", cut->size, "WIDTHxHEIGHT of the video: its largest part of that shape")
       ->required();

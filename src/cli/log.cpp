@@ -172,7 +172,7 @@ void add_align(CLI::App& group, Context& context) {
       "Find the time of a log at a video's first frame, from the turn rates of both");
   command->add_option("LOG", arguments->log, "Flight log with attitudes or turn rates")->required();
   command->add_option("VIDEO", arguments->video, "Video of the same flight")->required();
-  command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");
+  command->add_option("--lens", arguments->lens, "Calibration file (docs/lenses.md)");
   command->add_option("--fov", arguments->fov_deg, "Vertical view of a pinhole, degrees")
       ->check(CLI::Range(1.0, 179.0));
   const std::string& lens = arguments->lens;

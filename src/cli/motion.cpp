@@ -137,7 +137,7 @@ void add_motion(CLI::App& app, Context& context) {
           "rotation with --lens, homography without")
       ->check(CLI::IsMember({"auto", "rotation", "homography"}))
       ->capture_default_str();
-  command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow), for rotation");
+  command->add_option("--lens", arguments->lens, "Calibration file (docs/lenses.md), for rotation");
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   add_frame_rate(*command, arguments->picture_rate_hz);
   command->add_option("--plot", arguments->plot, "Draw the motion here (.png or .jpg)");

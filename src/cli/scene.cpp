@@ -166,7 +166,7 @@ void add_scene(CLI::App& app, Context& context) {
       ->required();
   command->add_option("-o,--out", arguments->out)
       ->description("Scene file to write (default: the video's name with .toml, here)");
-  command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");
+  command->add_option("--lens", arguments->lens, "Calibration file (docs/lenses.md)");
   add_frame_rate(*command, arguments->frame_rate_hz);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
 }
@@ -182,7 +182,7 @@ void add_studio(CLI::App& app, Context& context) {
   command->add_option(
       "-o,--out", arguments->out, "Folder of the videos that the page renders [out]");
   command->add_option("--lens", arguments->lens)
-      ->description("For a video: calibration (OpenCV or Gyroflow) of its camera");
+      ->description("For a video: calibration file of its camera (docs/lenses.md)");
   add_frame_rate(*command, arguments->frame_rate_hz);
   const std::string& input = arguments->file;
   expect_effect(context, *command, {"--lens", "--frame-rate"}, "on a scene", [&input] {
