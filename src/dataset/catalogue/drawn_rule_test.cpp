@@ -3,7 +3,12 @@
 
 #include <cmath>
 #include <map>
+#include <regex>
+#include <set>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <variant>
 
 #include <gtest/gtest.h>
 
@@ -11,9 +16,14 @@
 #include "dataset/build/plan.h"
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "scene/scene/table_reader.h"
 #include "sequence/setup/from_scene.h"
 #include "support/error_of.h"
 #include "support/small_catalogue.h"
+#include "support/small_encounter_model.h"
+#include "support/source_folder.h"
+#include "support/temporary_folder.h"
 
 namespace airtruth::catalogue {
 namespace {
@@ -137,6 +147,118 @@ TEST(DrawnPath, SaysWhatIsWrong) {
             std::string::npos);
   EXPECT_NE(error_of("[[random.seen]]\ntime_s = 2\npixel = [1, 2]\nrange_m = 9\n").find("alone"),
             std::string::npos);
+}
+
+// Every number of the rules, but those of tables that a scene has as well.
+const std::string kEveryNumber = R"(
+[stream]
+size_px = [64, 64]
+[[background]]
+name = "sky"
+flight = { frame_count = 2 }
+lens = { vertical_fov_deg = 60 }
+[[trajectory]]
+name = "a"
+waypoints_ned_m = [[60, 0, -150], [60, 20, -150]]
+speed_mps = 20
+[[aircraft]]
+name = "b"
+aircraft = "c172/news"
+[[sequence]]
+name = "one"
+background = "sky"
+trajectory = "a"
+aircraft = "b"
+[[product]]
+[[random]]
+aircraft = ["c172/*"]
+range_m = [1, 2]
+azimuth_deg = [1, 2]
+elevation_deg = [1, 2]
+heading_deg = [1, 2]
+speed_mps = [1, 2]
+climb_deg = [1, 2]
+bank_deg = [1, 2]
+intruders = 1
+sun_azimuth_deg = [1, 2]
+sun_elevation_deg = [1, 2]
+[[random]]
+name = "s{index}"
+aircraft = ["c172/*"]
+size_px = [1, 2]
+time_of_day_h = [10, 12]
+[[encounter_model]]
+kind = "geometric"
+aircraft = ["c172/*"]
+hmd_m = [0, 9]
+hmd_shares = [1]
+vmd_m = [0, 9]
+vmd_shares = [1]
+course_deg = 180
+speed_mps = 50
+climb_mps = 0
+turn_rate_dps = 0
+[[encounter_model]]
+name = "m{index}"
+kind = "bayes"
+model = "small.txt"
+aircraft = ["c172/*"]
+[[distractor]]
+kind = "bird"
+size_m = [1, 2]
+range_m = [1, 2]
+azimuth_deg = [1, 2]
+elevation_deg = [1, 2]
+heading_deg = [1, 2]
+climb_deg = [1, 2]
+speed_mps = [1, 2]
+count = 1
+flock = 1
+spread_m = [1, 2]
+glide = [0, 1]
+[[distractor]]
+kind = "insect"
+spot_px = [1, 2]
+opacity = [0.1, 0.2]
+speed_px_s = [1, 2]
+)";
+
+TEST(CatalogueRanges, StandInTheTablesOfThePage) {
+  using Bounds = std::pair<double, double>;
+  std::map<std::string, std::set<Bounds>> stated;  // by the keys of the same row
+  std::istringstream page(read_file(test_support::source_folder() / "docs/formats/catalogue.md"));
+  const std::regex name("`(\\w+)"), range("(-?[0-9.]+(?:e[0-9]+)?) to (-?[0-9.]+(?:e[0-9]+)?)");
+  for (std::string line; std::getline(page, line);) {
+    if (!line.starts_with('|')) continue;
+    for (std::sregex_iterator key(line.begin(), line.end(), name), end; key != end; ++key)
+      for (std::sregex_iterator one(line.begin(), line.end(), range); one != end; ++one)
+        stated[(*key)[1]].emplace(std::stod((*one)[1]), std::stod((*one)[2]));
+  }
+  const test_support::TemporaryFolder folder;
+  write_file(folder.path() / "small.txt", test_support::kSmallModel);
+  std::map<std::string, Bounds> read;
+  scene::call_on_key_use([&](const std::string& path, const scene::KeyUse& use) {
+    if (const auto* number = std::get_if<scene::NumberKey>(&use))
+      read[path] = {number->limits[0].low, number->limits[0].high};
+    if (const auto* whole = std::get_if<scene::WholeKey>(&use))
+      read[path] = {static_cast<double>(whole->low), static_cast<double>(whole->high)};
+  });
+  const std::string error =
+      test_support::error_of([&] { parse_catalogue(kEveryNumber, folder.path() / "c.toml"); });
+  scene::call_on_key_use({});
+  ASSERT_EQ(error, "no error");
+  const std::regex of_a_rule(
+      "(random|encounter_model|distractor|sequence|product)\\[\\d\\]\\.\\w+|stream\\.\\w+|"
+      "background\\[0\\]\\.(flight\\.(?!seed)\\w+|weight|first_frame|frame_count)");
+  int seen = 0;
+  for (const auto& [path, bounds] : read) {
+    const std::string key = path.substr(path.rfind('.') + 1);
+    if (!std::regex_match(path, of_a_rule) || key == "cpa_time_s") continue;  // within the clip
+    ++seen;
+    EXPECT_TRUE(stated[key].contains(bounds))
+        << path << ": " << bounds.first << " to " << bounds.second;
+  }
+  EXPECT_GT(seen, 60);
 }
 
 }  // namespace
