@@ -38,7 +38,7 @@ struct PixelMask {
 
 // One object in one frame.
 struct Label {
-  // Number of the object's track, the same throughout a clip; from 1.
+  // Number of the object's track, the same throughout a clip; from 0.
   std::int64_t track = 1;
   std::string category;
   // The first pixel covers [0, 1); docs/conventions.md.

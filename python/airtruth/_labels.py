@@ -14,7 +14,7 @@ from ._video import Path
 class Label:
     """One object in one frame of labelled video. What a format does not state is None."""
 
-    track: int  # the same throughout a clip; from 1
+    track: int  # the same throughout a clip; from 0
     category: str
     box_px: Numbers  # (4,): x, y, width, height; the first pixel covers [0, 1)
     visible: Optional[float]  # visible share, 0 to 1
