@@ -42,6 +42,7 @@ roll_deg = {ROLL_DEG}
 [output]
 video = "mkv"
 """
+NEWS = 'aircraft = "c172/news"\n'
 FRAMES = 16
 COMPARE = ("compare", "--real", "real/real.mkv", "--boxes", "boxes.csv", "--scene", "scene.toml")
 
@@ -116,12 +117,28 @@ class Compare(program.Case):
         self.assert_near(inserted, real, 0.15, "motion against the background")
 
     def test_type_and_attitude_are_found(self):
-        made(*COMPARE, "-o", "matched", "--types", "738/738-Ryanair,c172/news")
+        # The scale is that of the scene's own aircraft, which is not inserted.
+        write("scaled.toml", SCENE.replace(NEWS, NEWS + "catalogue_scale = 4\n"))
+        made(*COMPARE[:-1], "scaled.toml", "-o", "matched", "--types", "738/738-Ryanair,c172/news")
         pose = json.loads(read("matched", "comparison.json"))["pose"]
         self.assertEqual(pose["aircraft"], "c172/news")
         self.assertGreater(pose["overlap"], 0.7)
         for name, truth in (("yaw_deg", YAW_DEG), ("pitch_deg", PITCH_DEG), ("roll_deg", ROLL_DEG)):
             self.assertLess(abs(pose[name] - truth), 12, f"{name} of {pose}")
+
+    def test_an_aircraft_of_any_axes_and_scale_is_as_large_as_the_real_one(self):
+        # A block of 11 m along -y, 3 m high: in millimetres. The axes that an .obj has by itself show it upright.
+        corners = [(x, y, z) for x in (-600, 600) for y in (-5500, 5500) for z in (-1500, 1500)]
+        faces = ("1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4")
+        write("block.mtl", "newmtl dark\nKd 0.02 0.02 0.02\n")
+        lines = ["mtllib block.mtl", "usemtl dark"] + [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {face}" for face in faces]
+        write("block.obj", "\n".join(lines) + "\n")
+        own = 'aircraft = "block.obj"\nmodel_forward = "-y"\nmodel_up = "z"\nmodel_scale = 0.001\n'
+        for folder, aircraft in (("block", own), ("fourfold", NEWS + "catalogue_scale = 4\n")):
+            with self.subTest(folder):
+                write(f"{folder}.toml", SCENE.replace(NEWS, aircraft))
+                made(*COMPARE[:-1], f"{folder}.toml", "-o", folder, "--no-match")
+                self.assert_near(*reversed(measures(folder)["longest side"]), 0.15, "longest side")
 
     def test_the_folder_holds_what_the_documents_say(self):
         names = set(files("alike"))

@@ -26,11 +26,13 @@
 #include "foundation/base/files.h"
 #include "foundation/base/median.h"
 #include "foundation/geometry/box.h"
+#include "foundation/geometry/units.h"
 #include "foundation/image/colour.h"
 #include "foundation/image/mats.h"
 #include "labels/annotation/truth.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
+#include "scene/trajectory/path.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/pipeline/staged_folder.h"
 #include "sequence/setup/from_scene.h"
@@ -50,6 +52,13 @@ constexpr std::size_t kSunFrames = 2;      // that the sun is fitted to
 constexpr std::size_t kMaxPaints = 6;      // liveries of a type that are tried
 constexpr double kPoseSpacingDeg = 40;     // of the suns that a pose or a livery is tried under
 constexpr double kSunSpacingDeg = 15;      // of those that the best of them is
+
+// Level flight as fast as aircraft are loaded by default: with gear and flaps up, as those have
+// them whose silhouettes a pose is fitted to.
+Vector3 cruise_mps(double yaw_deg) {
+  return world_from_body({yaw_deg, 0, 0}) *
+         Vector3(model::LoadOptions().airspeed_kt * kMpsOfKnot, 0, 0);
+}
 
 // The scene with its first intruder beside the real aircraft, everything else standing still.
 scene::Scene scene_beside(const scene::Scene& given,
@@ -238,9 +247,8 @@ class Comparing {
     lens_ = setup::lens_of(of_clip, size);
     rate_hz_ = info.frame_rate.value();
     const scene::Intruder& intruder = given.intruders[0];
-    model::LoadOptions load;
-    load.stop = options_.stop;
-    aircraft_ = fleet::load_aircraft(intruder.aircraft, load, options_.warn);
+    const trajectory::Path level = trajectory::uniform(Vector3::Zero(), cruise_mps(0), {});
+    aircraft_ = setup::aircraft_of(intruder, level, options_.warn, options_.stop);
     attitude_ = {intruder.yaw_deg.value_or(90),
                  intruder.pitch_deg.value_or(0),
                  intruder.roll_deg.value_or(0)};
@@ -274,7 +282,11 @@ class Comparing {
 
   void take(const match::PoseFit& fit, scene::Scene& scene) {
     pose_ = fit;
-    scene.intruders[0].aircraft = fit.aircraft;
+    scene::Intruder& intruder = scene.intruders[0];
+    intruder.aircraft = fit.aircraft;
+    // Axes and scales are those of the scene's own aircraft.
+    intruder.model_forward = intruder.model_up = std::nullopt;
+    intruder.model_scale = intruder.catalogue_scale = std::nullopt;
     load(scene);
   }
 
