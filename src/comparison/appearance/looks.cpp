@@ -200,7 +200,8 @@ std::optional<Patch> patch_of(const image::Picture& picture, const Box& box) {
   patch.y = y;
   patch.rgb = image::mat_of(crop).clone();
   patch.grey = float_luma(picture, {x, y, side, side});
-  patch.silhouette = silhouette_of(patch.grey, kPatchReach * side);
+  // The ground below goes on beyond the patch.
+  patch.silhouette = silhouette_of(patch.grey, kPatchReach * side, true);
   return patch;
 }
 

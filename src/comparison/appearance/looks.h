@@ -19,7 +19,7 @@ struct Patch {
   int x = 0, y = 0;  // corner in the picture, px
   cv::Mat rgb;       // 8-bit
   cv::Mat grey;      // float code values
-  // 8-bit; 255 where the object stands out from its surroundings.
+  // 8-bit; 255 where the object, whole within the patch, stands out from its surroundings.
   cv::Mat silhouette;
 };
 

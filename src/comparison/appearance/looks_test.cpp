@@ -122,6 +122,17 @@ TEST(Looks, AnAircraftOfFivePixelsIsMeasured) {
   EXPECT_GT(looks.edge_width_px, 0);
 }
 
+TEST(Looks, AStripOfGroundAcrossThePatchIsNotTheAircraft) {
+  const Box box{100, 70, 47, 14};
+  const image::Picture picture = grey_picture(240, 180, [&](double x, double y) {
+    return inside(box, x, y) ? 110 : y > 94 && y < 112 ? 100 : 150;
+  });
+  const Looks looks = looks_of(*patch_of(picture, box));
+  EXPECT_EQ(looks.longest_px, 47);
+  EXPECT_NEAR(looks.contrast, -40, 0.5);
+  EXPECT_NEAR(looks.centre_px.y(), 77, 0.01);
+}
+
 TEST(Outline, EdgeOfABlurredStepIsTheGaussians) {
   // From 10 to 90 % of a Gaussian's integral: 2 x 1.2816 sigma. Straight lines between samples are
   // one more blur, of 1/6 px^2.

@@ -63,6 +63,11 @@ cv::Mat rim_of(const cv::Size& size) {
   return rim;
 }
 
+bool reaches_edge(const cv::Rect& bounds, const cv::Size& size) {
+  return bounds.x == 0 || bounds.y == 0 || bounds.br().x == size.width ||
+         bounds.br().y == size.height;
+}
+
 }  // namespace
 
 cv::Mat float_luma(const image::Picture& picture, const PixelBox& area) {
@@ -85,7 +90,7 @@ cv::Mat surroundings_of(const cv::Mat& grey, const cv::Mat& where) {
   return picture_of_plane(plane_through(grey, kept), grey.size());
 }
 
-cv::Mat silhouette_of(const cv::Mat& grey, double reach_px) {
+cv::Mat silhouette_of(const cv::Mat& grey, double reach_px, bool whole) {
   const cv::Mat rim = rim_of(grey.size());
   const cv::Mat level = surroundings_of(grey, rim);
   const double limit = std::max(kMinDifference, kDeviations * spread_about(grey, level, rim));
@@ -99,6 +104,11 @@ cv::Mat silhouette_of(const cv::Mat& grey, double reach_px) {
     const double away = std::hypot(centres.at<double>(i, 0) + 0.5 - grey.cols / 2.0,
                                    centres.at<double>(i, 1) + 0.5 - grey.rows / 2.0);
     const int area = statistics.at<int>(i, cv::CC_STAT_AREA);
+    const cv::Rect bounds(statistics.at<int>(i, cv::CC_STAT_LEFT),
+                          statistics.at<int>(i, cv::CC_STAT_TOP),
+                          statistics.at<int>(i, cv::CC_STAT_WIDTH),
+                          statistics.at<int>(i, cv::CC_STAT_HEIGHT));
+    if (whole && reaches_edge(bounds, grey.size())) continue;
     if (area > most && away <= reach_px) most = area, best = i;
   }
   if (best == 0) return cv::Mat(grey.size(), CV_8UC1, cv::Scalar(0));
@@ -111,12 +121,10 @@ std::optional<Seen> seen_in(const image::Picture& picture, const Box& loose) {
   if (wide.x < 0 || wide.y < 0 || wide.right() > picture.width || wide.bottom() > picture.height)
     return std::nullopt;
   const cv::Mat mask =
-      silhouette_of(float_luma(picture, wide), std::hypot(loose.width, loose.height) / 2);
+      silhouette_of(float_luma(picture, wide), std::hypot(loose.width, loose.height) / 2, false);
   const cv::Rect bounds = cv::boundingRect(mask);
   if (bounds.empty() || std::max(bounds.width, bounds.height) < 3) return std::nullopt;
-  if (bounds.x == 0 || bounds.y == 0 || bounds.x + bounds.width == mask.cols ||
-      bounds.y + bounds.height == mask.rows)
-    return std::nullopt;
+  if (reaches_edge(bounds, mask.size())) return std::nullopt;
   return Seen{{double(wide.x + bounds.x),
                double(wide.y + bounds.y),
                double(bounds.width),

@@ -21,9 +21,9 @@ cv::Mat surroundings_of(const cv::Mat& grey, const cv::Mat& where);
 
 // The part of `grey` that differs from a plane through its rim by more than 8 code values and four
 // times the rim's own spread, closed by 3 x 3; of the connected parts that have an area of 3 px or
-// more and their middle within `reach_px` of the middle of `grey`, the largest. 8-bit, 255 inside;
-// all 0 where there is none.
-cv::Mat silhouette_of(const cv::Mat& grey, double reach_px);
+// more and their middle within `reach_px` of the middle of `grey`, the largest. `whole`: parts that
+// reach the edge of `grey` are left out. 8-bit, 255 inside; all 0 where there is none.
+cv::Mat silhouette_of(const cv::Mat& grey, double reach_px, bool whole);
 
 // An aircraft in the picture: its bounds in whole pixels, and the pixels within them that belong to
 // it.
