@@ -126,6 +126,15 @@ class Compare(program.Case):
         for name, truth in (("yaw_deg", YAW_DEG), ("pitch_deg", PITCH_DEG), ("roll_deg", ROLL_DEG)):
             self.assertLess(abs(pose[name] - truth), 12, f"{name} of {pose}")
 
+    def test_pictures_of_any_rate_have_the_aircraft_beside_the_real_one(self):
+        write("pictures.toml", SCENE.replace('"real"', '"pictures"').replace('video = "mkv"', 'video = "png"'))
+        made("render", "pictures.toml", "--out", ".")
+        write("slow.toml", SCENE.replace('"sky.mkv"', '"sky.mkv"\nframe_rate_hz = 10'))
+        made("compare", "--real", "pictures/pictures", "--boxes", "boxes.csv", "--scene", "slow.toml", "-o", "slow", "--no-match")
+        self.assertGreaterEqual(json.loads(read("slow", "comparison.json"))["frames"], FRAMES - 2)
+        real, inserted = measures("slow")["motion against the background"]
+        self.assert_near(inserted, real, 0.15, "motion")
+
     def test_an_aircraft_of_any_axes_and_scale_is_as_large_as_the_real_one(self):
         # A block of 11 m along -y, 3 m high: in millimetres. The axes that an .obj has by itself show it upright.
         corners = [(x, y, z) for x in (-600, 600) for y in (-5500, 5500) for z in (-1500, 1500)]

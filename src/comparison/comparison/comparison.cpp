@@ -240,7 +240,9 @@ class Comparing {
 
  private:
   void load(const scene::Scene& given) {
-    const video::StreamInfo info = video::Reader(real_, {.threads = 1}).info();
+    const video::StreamInfo info =
+        video::Reader(real_, {.picture_rate_hz = given.background.frame_rate_hz, .threads = 1})
+            .info();
     const lens::ImageSize size{info.width, info.height};
     scene::Lens of_clip = given.lens;
     setup::take_pixel_shape(of_clip, size, info.sample_aspect.value());
