@@ -95,6 +95,12 @@ class Compare(program.Case):
         # Darker than the sky beside it: the exposure says so.
         self.assertLess(found["contrast to the surroundings"][0], -10)
 
+    def test_the_inserted_aircraft_cruises_with_its_gear_up(self):
+        first = json.loads(read("alike", "sequence", "truth.jsonl").splitlines()[0])["intruders"][0]
+        # 250 knots over ground, along its nose. A gear shows below 130 to 180 knots.
+        for found, truth in zip(first["velocity_ned_mps"], (0, 250 * 1852 / 3600)):
+            self.assertAlmostEqual(found, truth, 3)
+
     def test_the_exposure_of_the_scene_shows_in_the_contrast_alone_of_the_inserted_one(self):
         write("dark.toml", SCENE.replace("exposure = 0.3", "exposure = 0.1"))
         made("compare", "--real", "real/real.mkv", "--boxes", "boxes.csv", "--scene", "dark.toml", "-o", "dark", "--no-match")

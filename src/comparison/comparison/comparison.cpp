@@ -60,7 +60,7 @@ Vector3 cruise_mps(double yaw_deg) {
          Vector3(model::LoadOptions().airspeed_kt * kMpsOfKnot, 0, 0);
 }
 
-// The scene with its first intruder beside the real aircraft, everything else standing still.
+// The scene with its first intruder beside the real aircraft, and nothing else in the air.
 scene::Scene scene_beside(const scene::Scene& given,
                           const fs::path& real,
                           const match::RealBoxes& boxes,
@@ -74,6 +74,7 @@ scene::Scene scene_beside(const scene::Scene& given,
   scene.background.frame_count = boxes.rbegin()->first - boxes.begin()->first + 1;
   scene.camera = {};
   scene.camera.position_ned_m = Vector3::Zero();
+  scene.camera.velocity_ned_mps = path.camera_velocity_ned_mps;
   scene.camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{0, camera_pitch_deg, 0};
   scene.motion.model = scene::MotionModel::kNone;
   scene.intruders.resize(1);
@@ -313,6 +314,7 @@ class Comparing {
     const double pitch_deg = options_.camera_pitch_deg.value_or(match::camera_pitch_deg(attitude_));
     YawPitchRoll attitude = attitude_;
     match::look_up(pitch_deg, path, attitude);
+    match::set_off(cruise_mps(attitude.yaw_deg), path);
     return scene_beside(given, real_, boxes, path, attitude, pitch_deg);
   }
 

@@ -7,6 +7,7 @@
 #include "foundation/base/error.h"
 #include "foundation/geometry/box.h"
 #include "labels/projection/exact_box.h"
+#include "scene/trajectory/path.h"
 
 namespace airtruth::match {
 namespace {
@@ -171,6 +172,16 @@ void look_up(double pitch_deg, Beside& path, YawPitchRoll& attitude) {
   const Quaternion turn = world_from_body({0, pitch_deg, 0});
   for (Vector3& point : path.waypoints_ned_m) point = turn * point;
   attitude = yaw_pitch_roll(turn * world_from_body(attitude));
+}
+
+void set_off(const Vector3& level_ned_mps, Beside& path) {
+  // A motion that is added to all waypoints is added to the spline through them.
+  const auto seen = trajectory::spline_at_times(path.waypoints_ned_m, path.times_s).at(0);
+  Vector3& camera_mps = path.camera_velocity_ned_mps;
+  camera_mps = level_ned_mps - seen->velocity_in_world_mps;
+  camera_mps.z() = 0;
+  for (std::size_t i = 0; i < path.times_s.size(); ++i)
+    path.waypoints_ned_m[i] += path.times_s[i] * camera_mps;
 }
 
 }  // namespace airtruth::match

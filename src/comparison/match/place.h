@@ -10,11 +10,12 @@
 namespace airtruth::match {
 
 // Waypoints and times on which an aircraft of that mesh stays beside the real one, `scale` times as
-// large, in the view of a camera at the origin that looks north. Time 0 is the frame of the first
-// box. Throws Error where there is no room beside the real aircraft.
+// large, in the view of a camera at the origin that looks north and stands still. Time 0 is the
+// frame of the first box. Throws Error where there is no room beside the real aircraft.
 struct Beside {
   std::vector<Vector3> waypoints_ned_m;
   std::vector<double> times_s;
+  Vector3 camera_velocity_ned_mps = Vector3::Zero();
 };
 Beside path_beside(const RealBoxes& boxes,
                    const model::Mesh& mesh,
@@ -31,5 +32,9 @@ double camera_pitch_deg(const YawPitchRoll& attitude);
 
 // Rotates the world so that the picture stays the same and the camera looks up by that angle.
 void look_up(double pitch_deg, Beside& path, YawPitchRoll& attitude);
+
+// Moves camera and aircraft along level ground so that the picture stays the same and the aircraft
+// sets off with that velocity over ground.
+void set_off(const Vector3& level_ned_mps, Beside& path);
 
 }  // namespace airtruth::match

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/trajectory/path.h"
+
 namespace airtruth::match {
 namespace {
 
@@ -33,6 +35,20 @@ TEST(Place, LookingUpKeepsThePicture) {
                   .angularDistance(world_from_body(before)),
               0,
               1e-7);
+}
+
+TEST(Place, SettingOffKeepsThePictureAndHasTheVelocityOverGround) {
+  Beside path{{{500, -20, -90}, {510, 20, -87}, {500, 50, -80}}, {0, 1, 2}};
+  const Beside before = path;
+  const Vector3 cruise(30, 120, 0);
+  set_off(cruise, path);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3 camera = path.times_s[i] * path.camera_velocity_ned_mps;
+    EXPECT_TRUE((path.waypoints_ned_m[i] - camera).isApprox(before.waypoints_ned_m[i], 1e-12));
+    EXPECT_EQ(path.waypoints_ned_m[i].z(), before.waypoints_ned_m[i].z());
+  }
+  const auto first = trajectory::spline_at_times(path.waypoints_ned_m, path.times_s).at(0);
+  EXPECT_TRUE(first->velocity_in_world_mps.head<2>().isApprox(cruise.head<2>(), 1e-12));
 }
 
 }  // namespace
