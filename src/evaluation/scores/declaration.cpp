@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -96,22 +95,36 @@ EncounterScore score_of(const TruthSequence& truth, const std::vector<Shown>& sh
   return score;
 }
 
-// Values with the weights of their sequences.
-struct Weighted {
-  std::vector<double> values;
-  std::vector<double> weights;
-  void add(const std::optional<double>& value, double weight) {
+// Values of encounters with the weights of their sequences, which are what is drawn.
+class Weighted {
+ public:
+  void add(std::size_t sequence, const std::optional<double>& value, double weight) {
     if (!value) return;
-    values.push_back(*value);
-    weights.push_back(weight);
+    for (Sums* sums : {&all_, &sequences_[sequence]}) {
+      sums->values += *value;
+      sums->weighted += *value * weight;
+      sums->weight += weight;
+      ++sums->count;
+    }
   }
   std::optional<WeightedMean> mean() const {
-    const double weight = std::accumulate(weights.begin(), weights.end(), 0.0);
-    if (!(weight > 0)) return std::nullopt;
-    const double sum = std::inner_product(values.begin(), values.end(), weights.begin(), 0.0);
+    if (!(all_.weight > 0)) return std::nullopt;
+    std::vector<double> means, weights;
+    for (const auto& [sequence, sums] : sequences_) {
+      means.push_back(sums.values / static_cast<double>(sums.count));
+      weights.push_back(sums.weight);
+    }
     return WeightedMean{
-        sum / weight, evaluation::bootstrap_mean(values, weights), std::ssize(values)};
+        all_.weighted / all_.weight, evaluation::bootstrap_mean(means, weights), all_.count};
   }
+
+ private:
+  struct Sums {
+    double values = 0, weighted = 0, weight = 0;
+    std::int64_t count = 0;
+  };
+  Sums all_;
+  std::map<std::size_t, Sums> sequences_;
 };
 
 }  // namespace
@@ -145,8 +158,8 @@ DeclarationSummary summarised(std::span<const EncounterScore> encounters,
     const double weight = weights.empty() ? 1 : weights[one.sequence];
     declared.add(one.sequence, one.declaration.has_value());
     if (one.declaration) {
-      ranges.add(one.declaration->range_m, weight);
-      times.add(one.declaration->to_closest_approach_s, weight);
+      ranges.add(one.sequence, one.declaration->range_m, weight);
+      times.add(one.sequence, one.declaration->to_closest_approach_s, weight);
     }
     summary.no_violation += one.in_time == InTime::kNoViolation ? 1 : 0;
     summary.impossible += one.in_time == InTime::kImpossible ? 1 : 0;
@@ -214,7 +227,7 @@ std::vector<OperatingPoint> operating_curve(std::span<const ScoredDetections> se
            encounters_of(i, truths[sequences[i].truth], sequences[i], threshold, {})) {
         encounters.push_back(one);
         if (one.first_seen_range_m)
-          all.add(one.declaration ? one.declaration->range_m : std::optional(0.0), 1);
+          all.add(i, one.declaration ? one.declaration->range_m : std::optional(0.0), 1);
       }
       alarms += false_tracks(sequences[i], threshold);
     }

@@ -143,6 +143,28 @@ TEST(Declaration, SharesAndMeansWithWeights) {
   EXPECT_NEAR(weighted.in_time->value, 0.5, 1e-9);
 }
 
+TEST(Declaration, CopiesOfAnAircraftInItsSequenceNarrowNoInterval) {
+  const auto range_of_copies = [](int copies) {
+    std::vector<EncounterScore> encounters;
+    for (std::size_t i = 0; i < 4; ++i) {
+      EncounterScore one;
+      one.sequence = i;
+      one.declaration = Declaration{.range_m = 100.0 * static_cast<double>(i + 1)};
+      encounters.insert(encounters.end(), static_cast<std::size_t>(copies), one);
+    }
+    return *summarised(encounters, {}).range_m;
+  };
+  // Of the 256 draws of four values, one has the mean 100 and four have 125: the 2.5th percentile
+  // is at 150, which ten more have.
+  for (const int copies : {1, 5}) {
+    const WeightedMean range = range_of_copies(copies);
+    EXPECT_EQ(range.mean, 250);
+    EXPECT_EQ(range.interval->low, 150);
+    EXPECT_EQ(range.interval->high, 350);
+    EXPECT_EQ(range.count, 4 * copies);
+  }
+}
+
 TEST(Declaration, ATrackIsFalseWhereMostOfItIs) {
   const TruthSequence truth = encounter();
   results::SequenceDetections detections = nothing();
