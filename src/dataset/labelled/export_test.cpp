@@ -556,6 +556,18 @@ TEST_F(Made, AVideoThatIsGivenBelongsToAClip) {
   EXPECT_EQ(fault_of({{"B", video}}), "no error");
 }
 
+TEST_F(Made, AVideoIsForTheOnlyClipOfItsName) {
+  for (const char* part : {"train", "val"}) {
+    fs::create_directories(root_ / "mot" / part / "a/gt");
+    write_file(root_ / "mot" / part / "a/gt/gt.txt", "1,1,10,20,30,40,1,1,1\n");
+  }
+  ImportOptions options;
+  options.format = exchange::Format::kMot;
+  options.videos["a"] = LabelledSet(set()).clip("sky-across-b737").media;
+  EXPECT_THAT(test_support::error_of([&] { import_set(root_ / "mot", fresh(), options); }),
+              HasSubstr("fits 2 clips"));
+}
+
 // ffmpeg numbers the pictures of a video from 1.
 TEST_F(Made, ThePictureNumberedOneIsTheFirstFrameOfTheVideoThatIsGiven) {
   const fs::path out = fresh();

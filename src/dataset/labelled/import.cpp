@@ -182,10 +182,13 @@ std::string words_of_one(const std::vector<exchange::Clip>& clips) {
 void expect_clips_of_videos(const std::vector<exchange::Clip>& clips,
                             const std::map<std::string, fs::path>& videos) {
   for (const auto& [name, video] : videos) {
-    const bool fits_any =
-        name.empty() ? clips.size() == 1 && videos.size() == 1
-                     : std::ranges::find(clips, name, &exchange::Clip::name) != clips.end();
-    if (!fits_any)
+    const auto fitting = std::ranges::count(clips, name, &exchange::Clip::name);
+    if (fitting > 1)
+      throw Error(fmt::format("--video '{}={}' fits {} clips; expected a name that one clip has",
+                              name,
+                              video.string(),
+                              fitting));
+    if (name.empty() ? clips.size() != 1 || videos.size() != 1 : fitting == 0)
       throw Error(fmt::format("--video '{}{}{}' fits no clip; expected CLIP=VIDEO{}",
                               name,
                               name.empty() ? "" : "=",

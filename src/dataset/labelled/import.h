@@ -49,8 +49,8 @@ std::pair<std::string, std::string> class_of_category_from(const std::string& te
 // Reads labelled video of another format and writes out/sequences/NAME/labels.jsonl,
 // sequence.json and, of pictures, pictures.txt (docs/formats/labels.md). `overlay`, `dataset
 // export` and the evaluation read these like rendered sequences. The videos stay where they are.
-// Throws Error where `out` exists and is not empty, for a class that is none, and for a pattern
-// or a video that fits no clip.
+// Throws Error where `out` exists and is not empty, for a class that is none, for a pattern that
+// fits no clip, and for a video that fits none or several.
 ImportSummary import_set(const fs::path& source, const fs::path& out, const ImportOptions& options);
 
 }  // namespace airtruth::labelled

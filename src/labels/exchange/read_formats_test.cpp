@@ -626,6 +626,9 @@ TEST(Otb, AStartFrameThatIsNotKnownIsAskedFor) {
   EXPECT_EQ(clip.frames.at(2).labels.at(0).box_px.x, 2);
   options.start_frames = {{"his", 5}};
   EXPECT_THROW(read_clips(Format::kOtb, folder.path(), options, {}), Error);
+  options.start_frames = {{"mine", 5}};
+  otb_sequence(folder, "others/mine", 3, 10, 1);
+  EXPECT_THROW(read_clips(Format::kOtb, folder.path(), options, {}), Error);
 }
 
 // The two forms of the VisDrone toolkit (README of VisDrone2018-VID-toolkit and -DET-toolkit).

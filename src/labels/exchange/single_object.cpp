@@ -299,9 +299,11 @@ Clips read_single_object(const Reading& in) {
       clips.push_back(SequenceReader(folder, in).read());
   for (const auto& start : in.options.start_frames) {
     const std::string& name = start.first;
-    const auto is_named = [&](const Clip& clip) { return clip.name == name; };
-    if (!name.empty() && std::ranges::none_of(clips, is_named))
-      throw Error("no sequence is named '" + name + "', for which a start frame is given",
+    const auto count = std::ranges::count(clips, name, &Clip::name);
+    if (!name.empty() && count != 1)
+      throw Error(fmt::format("{} named '{}', for which a start frame is given",
+                              count == 0 ? "no sequence is" : "more than one sequence is",
+                              name),
                   {in.source.string()});
   }
   if (clips.empty())
