@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,31 +27,16 @@
 namespace airtruth::detector_evaluation {
 namespace {
 
-std::vector<results::ExpectedSequence> expected_of(
-    const std::vector<scores::TruthSequence>& truths) {
-  std::vector<results::ExpectedSequence> expected;
-  for (const scores::TruthSequence& truth : truths) {
-    expected.push_back({truth.name, truth.width, truth.height, std::ssize(truth.frames)});
-    expected.back().category_ids = truth.category_ids;
-    expected.back().categories = truth.categories;
-    expected.back().distractors = truth.distractors;
-    for (const scores::TruthFrame& frame : truth.frames) {
-      expected.back().pictures.push_back(frame.picture);
-      expected.back().image_ids.push_back(frame.image_id);
-    }
-  }
-  return expected;
-}
-
-std::vector<scores::ScoredDetections> results_in(const fs::path& source,
-                                                 const std::vector<scores::TruthSequence>& truths,
-                                                 const Warn& warn) {
+std::vector<scores::ScoredDetections> results_in(
+    const fs::path& source,
+    const std::vector<scores::TruthSequence>& truths,
+    std::span<const results::ExpectedSequence> expected,
+    const Warn& warn) {
   std::map<std::string, std::size_t> numbers;
   for (std::size_t i = 0; i < truths.size(); ++i) numbers[truths[i].name] = i;
   std::vector<scores::ScoredDetections> results;
   std::vector<std::string> of_other_content;
-  for (results::SequenceDetections& read :
-       results::read_detections(source, expected_of(truths), warn)) {
+  for (results::SequenceDetections& read : results::read_detections(source, expected, warn)) {
     const std::size_t truth = numbers.at(read.name);
     if (read.frames.size() != truths[truth].frames.size())
       throw Error(fmt::format("holds {} frames of '{}'; the data set has {}",
@@ -147,7 +133,8 @@ scores::Assessment assess(const fs::path& set,
       throw Error("is the second set of results called '" + name + "'", {source.string()});
     check_record(source / "detector.json");
     Results& of = found[name];
-    of = {is_associated(source), results_in(source, assessment.truths, options.warn)};
+    of = {is_associated(source),
+          results_in(source, assessment.truths, truth.expected, options.warn)};
     std::erase_if(of.sequences, [&](const scores::ScoredDetections& one) {
       return !sequences::hold(options.where, assessment.truths[one.truth].weather);
     });

@@ -52,22 +52,25 @@ std::map<std::int64_t, std::string> aircraft_in(const scores::TruthSequence& tru
   return aircraft;
 }
 
-scores::TruthSequence imported_truth(const labelled::LabelledSet& set, const std::string& name) {
+scores::TruthSequence imported_truth(const labelled::LabelledSet& set,
+                                     const std::string& name,
+                                     results::ExpectedSequence& expected) {
   exchange::Clip clip = set.clip(name);
   scores::TruthSequence truth;
   truth.name = name;
   truth.media = clip.media;
   truth.background_file = clip.media.filename().string();
   truth.background = set.facts(name).background_name;
-  truth.category_ids = clip.category_ids;
+  expected.category_ids = clip.category_ids;
   truth.width = clip.width;
   truth.height = clip.height;
   truth.frame_rate_hz = clip.frame_rate_hz.value_or(0);
   for (const exchange::LabelledFrame& labelled : clip.frames) {
     scores::TruthFrame& frame = truth.frames.emplace_back();
     frame.frame = labelled.frame;
-    frame.picture = labelled.picture;
     frame.image_id = labelled.image_id;
+    expected.pictures.push_back(labelled.picture);
+    expected.image_ids.push_back(labelled.image_id);
     const std::optional<double> time_s = clip.time_s_of(labelled);
     truth.has_times = truth.has_times && time_s;
     frame.time_s = time_s.value_or(0);
@@ -393,12 +396,17 @@ SetTruth set_truth(const fs::path& folder, const std::string& volume, fs::path i
   setup::SharedInputs inputs;
   std::size_t weighted = 0;
   for (const std::string& name : set.names()) {
+    results::ExpectedSequence& expected = result.expected.emplace_back();
     scores::TruthSequence& truth = result.sequences.emplace_back(
-        set.is_imported(name) ? imported_truth(set, name)
+        set.is_imported(name) ? imported_truth(set, name, expected)
                               : rendered_truth(set, name, volume, inputs));
     labelled::ClipFacts facts = set.facts(name);
-    truth.categories = std::move(facts.categories);
-    truth.distractors = std::move(facts.distractors);
+    expected.name = name;
+    expected.width = truth.width;
+    expected.height = truth.height;
+    expected.frames = std::ssize(truth.frames);
+    expected.categories = std::move(facts.categories);
+    expected.distractors = std::move(facts.distractors);
     weighted += truth.weight ? 1 : 0;
     truth.name = name;
     truth.sha256 = set.sha256_of(name);

@@ -8,13 +8,16 @@
 #include "dataset/labelled/labelled_set.h"
 #include "evaluation/scores/truth.h"
 #include "foundation/base/files.h"
+#include "runners/results/results_folder.h"
 
 // The truth of a data set as the measures of detections take it.
 namespace airtruth::detector_evaluation {
 
 struct SetTruth {
   std::vector<scores::TruthSequence> sequences;  // sorted by name
-  bool is_weighted = false;                      // a sequence states a weight
+  // What detections of these sequences have to fit, in the same order.
+  std::vector<results::ExpectedSequence> expected;
+  bool is_weighted = false;  // a sequence states a weight
   // What the truth lacks, as sentences for people.
   std::vector<std::string> left_out;
 };

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -57,8 +56,7 @@ struct TruthFrame {
   std::vector<TruthObject> objects;
   // Regions in which detections count neither way: unlabelled aircraft of the background.
   std::vector<Box> ignored_px;
-  // Of an imported clip: the file of the frame's picture and its number in its set.
-  std::string picture;
+  // Of an imported clip: the number of the frame's picture in its set.
   std::optional<std::int64_t> image_id;
 };
 
@@ -101,10 +99,6 @@ struct TruthSequence {
   // Of the encounter among those of its encounter model; empty where the set has none: it counts as
   // 1.
   std::optional<double> weight;
-  // Of an imported clip: its categories by their numbers in its set.
-  std::map<std::int64_t, std::string> category_ids;
-  // labelled::ClipFacts of these names.
-  std::set<std::string> categories, distractors;
   std::vector<TruthFrame> frames;
   std::vector<TruthEncounter> encounters;  // one for each aircraft that any frame shows
   // Number of intruders that no frame shows. No measure holds them: no detector could find them.
