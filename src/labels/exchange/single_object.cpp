@@ -99,22 +99,13 @@ Box box_of_mask(const Line& line, const fs::path& file) {
   const auto height = whole_in(n[3], 0, label_file::kLongestSide_px);
   if (!left || !top || !width || !height)
     throw Error("is no mask: its window is no whole numbers of pixels", where);
-  BoxBounds bounds;
-  std::int64_t at = 0;
+  std::int64_t left_px = *width * *height;
   for (std::size_t i = 4; i < n.size(); ++i) {
-    const auto run = whole_in(n[i], 0, *width * *height - at);
+    const auto run = whole_in(n[i], 0, left_px);
     if (!run) throw Error("is no mask: its run lengths do not fit its window", where);
-    if (i % 2 == 1 && *run > 0) {
-      const std::int64_t last = at + *run - 1;
-      const bool wraps = at / *width != last / *width;
-      const auto x = [&](std::int64_t column) { return static_cast<double>(*left + column); };
-      const auto y = [&](std::int64_t row) { return static_cast<double>(*top + row); };
-      bounds.add({x(wraps ? 0 : at % *width), y(at / *width)});
-      bounds.add({x(wraps ? *width : last % *width + 1), y(last / *width + 1)});
-    }
-    at += *run;
+    left_px -= *run;
   }
-  return bounds.box().value_or(Box{});
+  return bounds_of_mask(n).value_or(Box{});
 }
 
 // "key: value" of meta_info.ini.

@@ -12,6 +12,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"
+#include "foundation/geometry/box.h"
 #include "labels/label_file/label_file.h"
 
 namespace airtruth::exchange {
@@ -146,6 +147,27 @@ std::optional<Box> clipped(const Box& box, int width, int height) {
   const double y = std::max(box.y, 0.0);
   return Box{
       x, y, std::min(box.right(), double(width)) - x, std::min(box.bottom(), double(height)) - y};
+}
+
+std::optional<Box> bounds_of_mask(const std::vector<double>& n, int origin_px) {
+  constexpr std::size_t kHead = 4;  // x, y, width, height
+  const auto width = static_cast<std::int64_t>(n[2]);
+  BoxBounds bounds;
+  std::int64_t at = 0;
+  for (std::size_t i = kHead; i < n.size(); ++i) {
+    const auto run = static_cast<std::int64_t>(n[i]);
+    if ((i - kHead) % 2 == 1 && run > 0) {
+      const std::int64_t last = at + run - 1;
+      const std::int64_t top = at / width, bottom = last / width;  // rows
+      const bool is_one_row = top == bottom;
+      const double left = is_one_row ? double(at % width) : 0;
+      const double right = is_one_row ? double(last % width) : n[2] - 1;
+      bounds.add({n[0] + left - origin_px, n[1] + double(top) - origin_px});
+      bounds.add({n[0] + right + 1 - origin_px, n[1] + double(bottom) + 1 - origin_px});
+    }
+    at += run;
+  }
+  return bounds.box();
 }
 
 void LeftOut::add(const std::string& why, const std::string& first) {

@@ -93,7 +93,7 @@ Region next_region(Bytes& bytes, int origin_px) {
       n.insert(n.end(), size.begin(), size.begin() + 2);
       n.insert(n.end(), runs.begin(), runs.end());
       if (const auto fault = fault_of_mask(n)) bytes.fail("what ends here " + *fault);
-      return answer(bounds_of_mask(n, origin_px));
+      return answer(exchange::bounds_of_mask(n, origin_px));
     }
     default:
       bytes.fail(fmt::format("has a region of type {}", type));
@@ -127,31 +127,11 @@ std::optional<std::string> fault_of_mask(const std::vector<double>& n) {
   return std::nullopt;
 }
 
-std::optional<Box> bounds_of_mask(const std::vector<double>& n, int origin_px) {
-  const auto width = static_cast<std::int64_t>(n[2]);
-  BoxBounds bounds;
-  std::int64_t at = 0;
-  for (std::size_t i = kMaskHead; i < n.size(); ++i) {
-    const auto run = static_cast<std::int64_t>(n[i]);
-    if ((i - kMaskHead) % 2 == 1 && run > 0) {
-      const std::int64_t last = at + run - 1;
-      const std::int64_t top = at / width, bottom = last / width;  // rows
-      const bool is_one_row = top == bottom;
-      const double left = is_one_row ? double(at % width) : 0;
-      const double right = is_one_row ? double(last % width) : n[2] - 1;
-      bounds.add({n[0] + left - origin_px, n[1] + double(top) - origin_px});
-      bounds.add({n[0] + right + 1 - origin_px, n[1] + double(bottom) + 1 - origin_px});
-    }
-    at += run;
-  }
-  return bounds.box();
-}
-
 Region region_of(const exchange::Line& line, const std::filesystem::path& file, int origin_px) {
   if (line.text.starts_with('m')) {
     const std::vector<double> n = exchange::numbers_of({line.number, line.text.substr(1)}, file);
     if (const auto fault = fault_of_mask(n)) throw Error(*fault, {file.string(), line.number});
-    return answer(bounds_of_mask(n, origin_px));
+    return answer(exchange::bounds_of_mask(n, origin_px));
   }
   const std::vector<double> n = exchange::numbers_of(line, file);
   if (n.size() == 1) return marked(n[0]);

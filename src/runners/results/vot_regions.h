@@ -19,11 +19,8 @@ namespace airtruth::results {
 // coordinate that the numbers give to the first pixel, 0 or 1.
 std::optional<Box> bounds_of_polygon(const std::vector<double>& numbers, int origin_px = 0);
 
-// A mask is x, y, width, height and run lengths along its rows, of which the first counts zeros.
-// Describes what is wrong with it; empty for a valid one.
+// Describes what is wrong with a mask (exchange::bounds_of_mask()); empty for a valid one.
 std::optional<std::string> fault_of_mask(const std::vector<double>& numbers);
-// The bounds of the ones of a valid mask; empty where it has none.
-std::optional<Box> bounds_of_mask(const std::vector<double>& numbers, int origin_px = 0);
 
 struct Region {
   evaluation::VotFrame frame;

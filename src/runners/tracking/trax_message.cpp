@@ -11,6 +11,7 @@
 
 #include "foundation/base/names.h"
 #include "foundation/base/text.h"
+#include "labels/exchange/text.h"
 #include "runners/process/child.h"
 #include "runners/results/detections.h"
 #include "runners/results/vot_regions.h"
@@ -146,7 +147,7 @@ std::optional<Box> box_of(std::string_view region) {
     const std::vector<double> mask = numbers_of(region.substr(kMask.size()));
     if (const auto fault = results::fault_of_mask(mask))
       throw process::Failure("reported what " + *fault);
-    return sound(results::bounds_of_mask(mask));
+    return sound(exchange::bounds_of_mask(mask));
   }
   const std::vector<double> n = numbers_of(region);
   if (n.size() == 1) return std::nullopt;
