@@ -77,7 +77,10 @@ std::optional<double> quantiser_of(const AVFrame& frame) {
   double sum = 0;
   for (unsigned i = 0; i < parameters->nb_blocks; ++i)
     sum += parameters->qp + av_video_enc_params_block(parameters, i)->delta_qp;
-  return parameters->nb_blocks > 0 ? sum / parameters->nb_blocks : parameters->qp;
+  // libav's QP is of steps in codes of the coded depth, which double with each bit.
+  const int depth = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format))->comp[0].depth;
+  return (parameters->nb_blocks > 0 ? sum / parameters->nb_blocks : parameters->qp) -
+         6 * (depth - 8);
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ struct Frame {
   bool begins_shot = false;
   // True where the decoder reported corrupt data or concealed errors in it.
   bool damaged = false;
-  // Mean of H.264's QP over the frame's blocks; needs ReaderOptions::with_quantiser.
+  // Mean of H.264's QP over the frame's blocks, whose steps are in codes of 8 bits for any depth;
+  // needs ReaderOptions::with_quantiser.
   std::optional<double> quantiser;
   image::Picture picture;
 };

@@ -63,6 +63,17 @@ TEST_F(Video, ProResIsRoundedToEightBits) {
   }
 }
 
+// x264 counts its -qp from the finest step of the depth: 12 more for two bits more.
+TEST_F(Video, TheQuantiserOfDeeperSamplesIsThatOfEightBits) {
+  for (const char* how : {"-qp 30 -pix_fmt yuv420p", "-qp 42 -pix_fmt yuv420p10le"}) {
+    ffmpeg(std::string("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 -bf 0 ") + how +
+           " coded.mkv");
+    Reader reader(folder_ / "coded.mkv", {.threads = 1, .with_quantiser = true});
+    ASSERT_TRUE(reader.next());  // a key frame, which x264 codes finer
+    while (const auto frame = reader.next()) EXPECT_EQ(frame->quantiser, 30) << how;
+  }
+}
+
 TEST_F(Video, OddSizesAndNumberedImages) {
   ffmpeg(
       "-f lavfi -i testsrc=s=67x51:r=25:d=0.2 -vf format=rgb24,format=yuv420p -c:v ffv1 odd.mkv");
