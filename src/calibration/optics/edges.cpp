@@ -224,7 +224,7 @@ void EdgeMeter::add(const image::Picture& frame,
     if (count >= kMaxPerFrame) break;
     const cv::Point at = place.at;
     if (taken.at<unsigned char>(at) != 0) continue;
-    auto found = straight_step_at(grey, place);
+    auto found = straight_step_at(grey, place, dark, dark + unit);
     const double half_length = found ? found->line.half_length_px : 0;
     const cv::Point along = found ? cv::Point(static_cast<int>(half_length * found->line.ny),
                                               static_cast<int>(-half_length * found->line.nx))

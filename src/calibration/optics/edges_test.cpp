@@ -89,6 +89,13 @@ TEST(Edges, LinesAlongSomeOfThemAreNoSharpening) {
   EXPECT_LT(found.sharpening.value, 0.05);
 }
 
+// White of 16 to 235 is 235.
+TEST(Edges, OverexposedOnesAreNone) {
+  EdgeMeter meter(nullptr, {});
+  for (const double shift_px : {0.0, 1.3, 2.6}) meter.add(bars(0, shift_px, 1.0), std::nullopt);
+  EXPECT_EQ(meter.result().why(), "the clip shows 0 clean straight edges; it takes 12");
+}
+
 // OpenCV blurs along the columns alone.
 TEST(Edges, SofterAlongTheColumns) {
   for (const double beyond_px : {0.0, 0.8}) {

@@ -31,8 +31,8 @@ constexpr double kMaxBendPx = 0.2;
 constexpr double kMaxStepDeviation = 0.08;
 // Least number of samples of a level.
 constexpr int kMinLevelSamples = 10;
-// Levels beyond these code values are clipped.
-constexpr double kDarkestCode = 4, kBrightestCode = 248;
+// Distances from black and from white, code values, within which a level is clipped.
+constexpr double kAboveBlack = 4, kBelowWhite = 3;
 // Largest distance between the middle of the step and the line of its steepest places, px.
 constexpr double kMaxOffLinePx = 1.5;
 // Width of the border of the picture in which no edge is sought, px.
@@ -193,18 +193,21 @@ std::optional<Sampled> samples_across(const cv::Mat& grey, const EdgeLine& line)
 }
 
 // Whether the two levels are even, apart enough, and not clipped.
-bool has_clean_levels(const Side& low, const Side& high) {
+bool has_clean_levels(const Side& low, const Side& high, double black, double white) {
   if (low.count < kMinLevelSamples || high.count < kMinLevelSamples) return false;
   const double height = high.mean() - low.mean();
   const double uneven = std::sqrt(std::max(low.variance(), high.variance()));
   return height >= kMinStepHeightCodes && uneven <= kMaxStepDeviation * height &&
-         high.mean() <= kBrightestCode && low.mean() >= kDarkestCode;
+         high.mean() <= white - kBelowWhite && low.mean() >= black + kAboveBlack;
 }
 
 // The step across an edge; empty if it is not clean.
-std::optional<StraightStep> step_across(const cv::Mat& grey, const EdgeLine& line) {
+std::optional<StraightStep> step_across(const cv::Mat& grey,
+                                        const EdgeLine& line,
+                                        double black,
+                                        double white) {
   auto sampled = samples_across(grey, line);
-  if (!sampled || !has_clean_levels(sampled->low, sampled->high)) return std::nullopt;
+  if (!sampled || !has_clean_levels(sampled->low, sampled->high, black, white)) return std::nullopt;
   StraightStep found{line};
   StepEdge& step = found.step;
   step = {sampled->low.mean(), sampled->high.mean(), std::move(sampled->samples)};
@@ -255,11 +258,14 @@ std::vector<SteepPlace> steep_places(const cv::Mat& grey) {
   return places;
 }
 
-std::optional<StraightStep> straight_step_at(const cv::Mat& grey, const SteepPlace& place) {
+std::optional<StraightStep> straight_step_at(const cv::Mat& grey,
+                                             const SteepPlace& place,
+                                             double black,
+                                             double white) {
   for (const int half_length : {kLongEdgePx, kShortEdgePx}) {
     const auto line = straight_edge(grey, place, half_length);
     if (!line) continue;
-    if (auto step = step_across(grey, *line)) return step;
+    if (auto step = step_across(grey, *line, black, white)) return step;
   }
   return std::nullopt;
 }

@@ -35,7 +35,10 @@ struct StraightStep {
 };
 
 // The step at a place, over the longer of the two lengths over which it is clean and straight;
-// empty if it is over neither.
-std::optional<StraightStep> straight_step_at(const cv::Mat& grey, const SteepPlace& place);
+// empty if it is over neither. `black`, `white`: the luma of the picture's range, code values.
+std::optional<StraightStep> straight_step_at(const cv::Mat& grey,
+                                             const SteepPlace& place,
+                                             double black,
+                                             double white);
 
 }  // namespace airtruth::optics

@@ -26,8 +26,8 @@ constexpr double kFlatShare = 0.12;
 constexpr std::size_t kMinBlocks = 12;
 // Variance of rounding to whole code values, squared code values.
 constexpr double kRounding = 1.0 / 12;
-// Code values at and beyond which luma counts as clipped.
-constexpr int kDarkestCode = 2, kBrightestCode = 250;
+// Distances from black and from white, code values, within which luma counts as clipped.
+constexpr double kAboveBlack = 2, kBelowWhite = 5;
 // Upper bound of the weight of a point of the curve, blocks, so that the many blocks of sky do not
 // dominate the dark points.
 constexpr int kMaxBlocksOfWeight = 40;
@@ -43,7 +43,7 @@ struct Statistics {
   double mean = 0;
   double variance = 0;
   double covariance = 0;
-  bool clipped = false;
+  int least = 255, most = 0;  // luma
 };
 
 // Statistics of a block after the best-fitting plane is subtracted. The plane has three degrees of
@@ -57,7 +57,8 @@ Statistics statistics_of(const image::Picture& picture, int x0, int y0) {
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x) {
       const int v = image::luma_at(picture, x0 + x, y0 + y);
-      result.clipped = result.clipped || v <= kDarkestCode || v >= kBrightestCode;
+      result.least = std::min(result.least, v);
+      result.most = std::max(result.most, v);
       sum += v;
       sum_x += v * (x - kHalf);
       sum_y += v * (y - kHalf);
@@ -173,6 +174,9 @@ void NoiseMeter::add(const image::Picture& frame, const image::Picture& next) {
   const image::ColourCode code(frame.colour);
   const double dark = double(code.ycc_from_rgb({0, 0, 0}).y);
   codes_per_unit_ = double(code.ycc_from_rgb({1, 1, 1}).y) - dark;
+  const auto is_clipped = [&](const Statistics& block) {
+    return block.least <= dark + kAboveBlack || block.most >= dark + codes_per_unit_ - kBelowWhite;
+  };
   const auto is_free = [&](int x, int y) {
     if (own_aircraft_ == nullptr) return true;
     return own_aircraft_->is_free(x, y) && own_aircraft_->is_free(x + kSide - 1, y) &&
@@ -184,7 +188,7 @@ void NoiseMeter::add(const image::Picture& frame, const image::Picture& next) {
       if (!is_free(x, y)) continue;
       const Statistics deciding = statistics_of(frame, x, y);
       const Statistics taken = statistics_of(next, x, y);
-      if (deciding.clipped || taken.clipped) continue;
+      if (is_clipped(deciding) || is_clipped(taken)) continue;
       blocks_.push_back({(taken.mean - dark) / codes_per_unit_,
                          taken.variance,
                          taken.covariance,

@@ -30,7 +30,7 @@ image::Picture stripes(const std::vector<double>& lumas,
           sensor.tone.linear_from_coded(lumas[static_cast<std::size_t>(x / kStripePx)]);
       const double noise =
           std::sqrt(sensor.noise_gain * light + sensor.noise_floor) * random.normal();
-      const double coded = sensor.tone.coded_from_linear(std::max(0.0, light + noise));
+      const double coded = sensor.tone.coded_from_linear(std::clamp(light + noise, 0.0, 1.0));
       picture.planes[0].row(y)[x] =
           static_cast<std::uint8_t>(std::lround(16 + double(kCodesPerUnit) * coded));
     }
@@ -104,6 +104,15 @@ TEST(NoiseMeter, OfRedGreenAndBlueItMeasuresLuma) {
   const double share = std::hypot(0.299, 0.587, 0.114);
   for (std::size_t i = 0; i < points.size(); ++i)
     expect_sigma(points[i].sigma_codes / share, lumas[i], truth);
+}
+
+// Black and white of 16 to 235 cut the noise of the first and of the last.
+TEST(NoiseMeter, ClippedStripesAreLeftOut) {
+  const std::vector<double> lumas{0.2 / 24, 8.5 / 24, 14.5 / 24, 23.9 / 24};
+  const auto points = metered(lumas, {.noise_gain = 2e-4, .noise_floor = 1e-5}).points();
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_NEAR(points[0].luma, lumas[1], 1e-9);
+  EXPECT_NEAR(points[1].luma, lumas[2], 1e-9);
 }
 
 TEST(NoiseMeter, OneBrightnessIsNoCurve) {
