@@ -151,7 +151,8 @@ double area_before(const Pixel& normal, double t) {
   const double narrow = std::min(std::abs(normal.x()), std::abs(normal.y()));
   if (t < 0) return 1 - area_before(normal, -t);
   if (2 * t <= wide - narrow) return 0.5 + t / wide;
-  const double left = std::max(0.0, (wide + narrow) / 2 - t);
+  if (2 * t >= wide + narrow) return 1;  // also where narrow is 0, by which the rest divides
+  const double left = (wide + narrow) / 2 - t;
   return 1 - left * left / (2 * wide * narrow);
 }
 

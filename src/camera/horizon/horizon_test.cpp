@@ -255,6 +255,12 @@ TEST(Horizon, AShareOfAPixelIsThatOfItsRays) {
   Homography nominal_from_frame = Homography::Identity();
   nominal_from_frame(1, 2) = -10.25;
   EXPECT_NEAR(share_below(the_lens(), up_of(0, 0), nominal_from_frame, 99, 250), 0.75, 1e-4);
+  // A pixel whose two rays, of its middle and of its right edge, are equally far from the lens's
+  // middle column: the horizon is along the rows to the last bit.
+  nominal_from_frame(0, 2) = 0.25;
+  const Vector3 up = -Vector3::UnitY();
+  EXPECT_EQ(share_below(the_lens(), up, nominal_from_frame, kSkyWidth / 2 - 1, 300), 1);
+  EXPECT_EQ(share_below(the_lens(), up, nominal_from_frame, kSkyWidth / 2 - 1, 100), 0);
 }
 
 }  // namespace
