@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "foundation/base/median.h"
 #include "foundation/image/colour.h"
@@ -35,6 +36,9 @@ constexpr int kMaxBlocksOfWeight = 40;
 constexpr double kTextureExcess = 0.04;
 // Bound of a squared relative residual, so that texture does not widen the error.
 constexpr double kMaxSquaredResidual = 0.02;
+// Least mean of a squared relative residual times the number of its blocks: the variance that
+// chance gives a block's variance (2 / degrees of freedom), pi / 2 times that in their median.
+constexpr double kLeastScatter = std::numbers::pi / (kSide * kSide - 3);
 // Below this variance in linear light the noise is 0; it corresponds to a hundredth of a code
 // value.
 constexpr double kMinVariance = 1e-9;
@@ -163,7 +167,8 @@ NoiseCurve noise_curve(const std::vector<CurvePoint>& points) {
   }
   if (fit.gain < kMinVariance) fit.gain = 0;
   if (fit.floor < kMinVariance) fit.floor = 0;
-  const double scale = chi / std::max<double>(1, double(points.size()) - 2);
+  const double least = fit.gain > 0 || fit.floor > 0 ? kLeastScatter : 0;
+  const double scale = std::max(least, chi / std::max<double>(1, double(points.size()) - 2));
   return {{fit.gain, fit.det > 0 ? std::sqrt(scale * fit.sw / fit.det) : fit.gain},
           {fit.floor, fit.det > 0 ? std::sqrt(scale * fit.sxx / fit.det) : fit.floor}};
 }

@@ -115,6 +115,16 @@ TEST(NoiseMeter, ClippedStripesAreLeftOut) {
   EXPECT_NEAR(points[1].luma, lumas[2], 1e-9);
 }
 
+// A line goes through two points, whatever they are off by.
+TEST(NoiseMeter, TwoBrightnessesHaveTheErrorOfChance) {
+  const auto fitted =
+      metered({8.5 / 24, 14.5 / 24}, {.noise_gain = 2e-4, .noise_floor = 1e-5}).result();
+  ASSERT_TRUE(fitted) << fitted.why();
+  EXPECT_LT(std::abs(fitted->gain.value - 2e-4), 4 * fitted->gain.sigma);
+  EXPECT_LT(std::abs(fitted->floor.value - 1e-5), 4 * fitted->floor.sigma);
+  EXPECT_LT(fitted->gain.sigma, 0.2 * 2e-4);
+}
+
 TEST(NoiseMeter, OneBrightnessIsNoCurve) {
   const NoiseMeter meter = metered({12.5 / 24}, {.noise_gain = 2e-4, .noise_floor = 1e-5});
   EXPECT_EQ(meter.result().why(),
