@@ -12,8 +12,9 @@ using Json = nlohmann::ordered_json;
 
 // Keys of texts that belong to no quantity alone.
 constexpr const char* kHorizon = "horizon";
-// The key that a cached calibration has beyond those of kQuantityKeys.
+// The keys that a cached calibration has beyond those of kQuantityKeys.
 constexpr const char* kReadoutDirection = "shutter.readout";
+constexpr const char* kDownwards = "shutter.downwards_s";
 
 Json json_of(const Calibration& c) {
   Json values = Json::object(), missing = Json::object(), notes = Json::object();
@@ -28,6 +29,7 @@ Json json_of(const Calibration& c) {
     add(missing, key.name, quantity.missing);
     add(notes, key.name, quantity.note);
   }
+  if (c.downwards_s) values[kDownwards] = {c.downwards_s->value, c.downwards_s->sigma};
   add(missing, kHorizon, c.no_horizon);
   add(notes, kHorizon, c.horizon_note);
   add(notes, kReadoutDirection, c.readout_direction);
@@ -57,6 +59,9 @@ Calibration calibration_from_json(const Json& json) {
     quantity.missing = missing.value(key.name, "");
     quantity.note = notes.value(key.name, "");
   }
+  if (values.contains(kDownwards))
+    c.downwards_s = {values[kDownwards].at(0).get<double>(),
+                     values[kDownwards].at(1).get<double>()};
   c.no_horizon = missing.value(kHorizon, "");
   c.horizon_note = notes.value(kHorizon, "");
   c.readout_direction = notes.value(kReadoutDirection, "");

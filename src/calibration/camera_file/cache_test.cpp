@@ -74,6 +74,7 @@ TEST_F(CalibrationCache, WhatIsKeptComesBackToTheLastBit) {
   c.quantities.at("shutter.exposure_s").missing = "the clip is too still";
   c.quantities.readout.note = "by 2 of 3 clips";
   c.readout_direction = "up";
+  c.downwards_s = {-1.0 / 7, 1.0 / 9};
   c.yaw_from_first_deg = {0, 1.0 / 7, -179.9};
   const CacheKey key{"v", "m", "lens", 150, {}};
   EXPECT_FALSE(cached(cache_, key));
@@ -84,6 +85,9 @@ TEST_F(CalibrationCache, WhatIsKeptComesBackToTheLastBit) {
   EXPECT_EQ(found->frame_rate_hz, c.frame_rate_hz);
   EXPECT_EQ(found->lens, c.lens);
   EXPECT_EQ(found->readout_direction, c.readout_direction);
+  ASSERT_TRUE(found->downwards_s);
+  EXPECT_EQ(found->downwards_s->value, c.downwards_s->value);
+  EXPECT_EQ(found->downwards_s->sigma, c.downwards_s->sigma);
   EXPECT_EQ(found->yaw_from_first_deg, c.yaw_from_first_deg);
   for (const QuantityKey& one_of : kQuantityKeys)
     expect_same(found->quantities.*one_of.member, c.quantities.*one_of.member, one_of.name);

@@ -138,7 +138,7 @@ struct Calibration {
   image::ToneCurve tone;
   Quantities quantities;
   // The readout time of the frame in seconds with its sign, positive downwards. It is kept whether
-  // or not it differs significantly from 0, since join.h combines the signed values of clips.
+  // or not it differs significantly from 0, since join.h and profile.h combine signed values.
   std::optional<Estimate> downwards_s;
   // The direction in which the rows are read: "down" or "up"; empty if no readout is measured.
   std::string readout_direction;

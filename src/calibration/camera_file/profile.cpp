@@ -61,7 +61,9 @@ std::string with_error(const Estimate& e) {
   return fmt::format("{:.3g} +- {:.2g}", e.value, e.sigma);
 }
 
+// What was measured, where it is known: the quantity is 0 within two errors.
 Estimate signed_readout(const Calibration& c) {
+  if (c.downwards_s) return *c.downwards_s;
   Estimate readout = c.quantities.readout.value();
   if (c.readout_direction == "up") readout.value = -readout.value;
   return readout;

@@ -109,6 +109,16 @@ TEST(CameraProfile, ClipAndProfileAreCombinedByInverseVariance) {
   EXPECT_EQ(combined({0.9, 0}, {0.4, 0.1}).value, 0.9);
 }
 
+// -4 +- 4 ms is written as 0, and its weight is a sixteenth of the profile's -20 +- 1 ms.
+TEST(CameraProfile, AReadoutGoesInAsItWasMeasured) {
+  Calibration c = clip_of(64, 48);
+  c.downwards_s = {-0.004, 0.004};
+  c.quantities.readout.values = {{0, 0.004}};
+  c = with_profile(std::move(c), small_camera());
+  EXPECT_NEAR(c.quantities.readout.value().value, (0.004 + 16 * 0.02) / 17, 1e-12);
+  EXPECT_EQ(c.readout_direction, "up");
+}
+
 TEST(CameraProfile, SaysWhoseAValueIs) {
   Calibration c = clip_of(64, 48);
   c.quantities.at("shutter.readout_s").missing = "too still";
