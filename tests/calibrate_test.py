@@ -5,6 +5,7 @@ The clip of calibrate is drawn here, with numpy and OpenCV: painted panels throu
 virtual flight, whose own aircraft is known.
 """
 
+import json
 import os
 import shutil
 import subprocess
@@ -110,6 +111,20 @@ class Calibrate(program.Case):
             draw("coded.mp4", 0.8, 4e-4, 3e-5, ("-c:v", "libx264", "-qp", crf))
             steps.append(calibrated("coded.mp4", "coded.toml")["sensor"]["codec_step"])
         self.assert_near(steps[1] / steps[0], 2, 0.05, "ratio of the codec's steps")
+
+    def test_no_edge_and_no_noise_is_of_a_damaged_frame(self):
+        # The second frame is broken, and each later one is predicted from the one before.
+        draw("coded.mkv", 0.8, 4e-4, 3e-5, ("-c:v", "libx264", "-qp", "18", "-bf", "0", "-sc_threshold", "0"))
+        packets = subprocess.run(["ffprobe", "-v", "error", "-show_entries", "packet=pos,size", "-of", "json", path("coded.mkv")],
+                                 check=True, capture_output=True).stdout
+        second = json.loads(packets)["packets"][1]
+        begin, size = int(second["pos"]), int(second["size"])
+        with open(path("coded.mkv"), "r+b") as file:
+            file.seek(begin + size // 2)
+            file.write(numpy.random.default_rng(1).bytes(size // 3))
+        made("calibrate", "coded.mkv", "-o", "damaged.toml", "--profile", "none", "--overwrite")
+        self.assertIn("the clip shows 0 clean straight edges", read("damaged.toml"))
+        self.assertIn("the clip has flat parts of 0 brightnesses", read("damaged.toml"))
 
     def test_the_camera_file_names_its_clip_and_goes_into_a_scene(self):
         found = calibrated("panels.mkv", "camera.toml")

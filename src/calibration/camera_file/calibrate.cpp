@@ -143,9 +143,10 @@ class Session {
       blur_.add(frame->picture, step ? std::optional(centre_motion(*step)) : std::nullopt);
       const std::optional<Quaternion> turned = turn_of(*frame);
       if (frame->quantiser) quantisers_.push_back(*frame->quantiser);
+      if (frame->damaged) before.reset();
       if (frame->index % every_ == 1 && before) sample(*before, *frame, step, turned);
       // The measurements of the next sampled frame also use the frame before it.
-      before = std::move(frame->picture);
+      if (!frame->damaged) before = std::move(frame->picture);
       ++result_.frames;
       if (options_.progress) options_.progress(result_.frames, total_);
     }
