@@ -51,15 +51,16 @@ void require_covered(const std::vector<Record>& records, const char* what, doubl
 // Positions within this time count as one.
 constexpr double kBinS = 0.5;
 
-// How many of the fixes [begin, end), whose places are equal, count. Writers of many records a
-// second hold a position until the receiver's next one: where that lasts longer than the averaging,
-// the first of them is the receiver's. What stands still for longer than receivers take hovers; it
-// then does so until the receiver's last position before the next one, about a second before.
+// How many of the fixes [begin, end), whose places are equal, count. Writers of more records than
+// the receiver's hold a position until its next one: where they could fill two bins, which would be
+// a rest of the path, the first of them is the receiver's. Two fixes can from a third of a second
+// on, more of them from half a second on; both with a margin for times that jitter. What stands
+// still for longer than receivers take hovers; it then does so until the receiver's last position
+// before the next one, about a second before.
 std::size_t number_that_counts(const std::vector<Fix>& fixes, std::size_t begin, std::size_t end) {
   constexpr double kHoverS = 2, kReceiverS = 0.9;
   const double length_s = fixes[end - 1].time_s - fixes[begin].time_s;
-  if (length_s <= kBinS || fixes[begin + 1].time_s - fixes[begin].time_s >= kBinS)
-    return end - begin;
+  if (length_s < (end - begin == 2 ? 0.6 : 0.9) * kBinS) return end - begin;
   if (length_s <= kHoverS) return 1;
   if (end == fixes.size()) return end - begin;
   const double next_s = fixes[end].time_s;

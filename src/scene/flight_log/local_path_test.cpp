@@ -2,6 +2,8 @@
 #include "scene/flight_log/local_path.h"
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -92,24 +94,28 @@ TEST(LocalPath, APositionOfOneMicrodegreeDoesNotShake) {
   }
 }
 
-// A log of 50 records a second that holds the positions of a receiver of one a second; the height
-// is a barometer's.
-FlightLog held(FlightLog log) {
+// A log that holds each position of a receiver for so many records; the height is a barometer's.
+FlightLog held(FlightLog log, int records = 50) {
   FlightLog result;
   for (std::size_t i = 0; i + 1 < log.fixes.size(); ++i)
-    for (int part = 0; part < 50; ++part) {
+    for (int part = 0; part < records; ++part) {
+      const double share = part / static_cast<double>(records);
       Fix& fix = result.fixes.emplace_back(log.fixes[i]);
-      fix.time_s += part / 50.0;
-      fix.altitude_m += part / 50.0 * (log.fixes[i + 1].altitude_m - fix.altitude_m);
+      fix.time_s += share * (log.fixes[i + 1].time_s - fix.time_s);
+      fix.altitude_m += share * (log.fixes[i + 1].altitude_m - fix.altitude_m);
     }
   return result;
 }
 
 TEST(LocalPath, PositionsThatALogRepeatsAreThoseOfTheirFirstRecords) {
-  const auto path = local_path(held(straight(15, 20, 2, 1)), {20, {0, 0, 0}});
-  for (double t = -5; t <= 39; t += 0.25) {
-    EXPECT_LT((path.at(t)->velocity_in_world_mps - Vector3(15, 20, -2)).norm(), 0.1) << t;
-    EXPECT_LT((path.at(t)->position_in_world - Vector3(15, 20, -2) * t).norm(), 0.1) << t;
+  // Receivers of 1, 1.25, 5/6 and 0.5 positions a second.
+  for (const auto& [rate, records] :
+       std::vector<std::pair<double, int>>{{1, 50}, {1, 2}, {1.25, 2}, {5.0 / 6, 2}, {0.5, 2}}) {
+    const auto path = local_path(held(straight(15, 20, 2, rate), records), {20, {0, 0, 0}});
+    for (double t = -5; t <= 38; t += 0.25) {
+      EXPECT_LT((path.at(t)->velocity_in_world_mps - Vector3(15, 20, -2)).norm(), 0.1) << t;
+      EXPECT_LT((path.at(t)->position_in_world - Vector3(15, 20, -2) * t).norm(), 0.1) << t;
+    }
   }
 }
 
