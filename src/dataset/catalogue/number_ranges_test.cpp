@@ -471,7 +471,7 @@ TEST_F(NumberRanges, OfAPathFile) {
       "time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg\n0,60,-3,-150,90,1,2\n"
       "1,61,4,-151,91,2,3\n3,62,9,-150,92,1,2\n",
       [](const std::string& text) {
-        const trajectory::Path path = trajectory::parse_path_csv(text, "p.csv", {});
+        const trajectory::Path path = trajectory::parse_path_csv(text, "p.csv");
         for (const double share : {0.0, 0.3, 1.0}) {
           const auto state = path.at(path.start_s() + share * (path.end_s() - path.start_s()));
           ASSERT_TRUE(state);

@@ -393,12 +393,10 @@ Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude) {
 
 // Position and its derivatives follow the samples. Angles follow the samples where they state them
 // and the path elsewhere.
-Path path_through_samples(const Samples& samples, const AttitudeOverride& attitude) {
-  const auto along =
-      std::make_shared<const Curve>(samples.times_s, samples.positions_ned_m, attitude, kCourseMps);
-  const std::array<bool, 3> sampled = {samples.has_angle[0] && !attitude.yaw_deg,
-                                       samples.has_angle[1] && !attitude.pitch_deg,
-                                       samples.has_angle[2] && !attitude.roll_deg};
+Path path_through_samples(const Samples& samples, const AttitudeOverride& otherwise) {
+  const auto along = std::make_shared<const Curve>(
+      samples.times_s, samples.positions_ned_m, otherwise, kCourseMps);
+  const std::array<bool, 3> sampled = samples.has_angle;
   const auto angles = std::make_shared<const CubicSpline>(
       samples.times_s, unwrapped_angles(samples, sampled == std::array{true, true, true}));
   return Path(angles->begin(), angles->end(), [along, angles, sampled](double t) {

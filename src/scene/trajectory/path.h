@@ -114,9 +114,9 @@ struct Samples {
 // The C2 spline through samples, flown as that at times. Between equal neighbouring positions it
 // stands still, and the spline ends there and begins anew (C1). An angle that the samples state
 // follows a spline through its unwrapped values, and three together also across the pole
-// (nearest_angles()); any other angle follows from the path as above. `attitude` replaces either.
-// The samples must hold at least two times.
-Path path_through_samples(const Samples& samples, const AttitudeOverride& attitude = {});
+// (nearest_angles()); any other angle is that of `otherwise`, or follows from the path as above. The
+// samples must hold at least two times.
+Path path_through_samples(const Samples& samples, const AttitudeOverride& otherwise = {});
 
 // Flight at constant speed, climb and rate of turn: a straight line or a helix. It passes
 // `position_ned_m` at `time_s` and has neither start nor end.
@@ -140,9 +140,9 @@ Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude = {});
 //
 // Errors carry file and line: a missing or unknown column (the message offers the nearest
 // spelling), a cell that is not a number, times that do not increase, fewer than two rows.
-Path read_path_file(const std::filesystem::path& path, const AttitudeOverride& attitude = {});
-Path parse_path_csv(std::string_view text,
-                    const std::filesystem::path& name,
-                    const AttitudeOverride& attitude = {});
+Path read_path_file(const std::filesystem::path& path);
+Path parse_path_csv(std::string_view text, const std::filesystem::path& name);
+// The samples of such a file, with the same errors.
+Samples read_path_samples(const std::filesystem::path& path);
 
 }  // namespace airtruth::trajectory

@@ -76,7 +76,7 @@ void add_row(const std::vector<std::string>& cells,
   samples.angles_deg.push_back(angle);
 }
 
-Samples read_samples(std::string_view text, const std::string& file) {
+Samples parse_samples(std::string_view text, const std::string& file) {
   std::istringstream lines{std::string(without_mark(text))};
   std::string line;
   if (!std::getline(lines, line))
@@ -99,14 +99,16 @@ Samples read_samples(std::string_view text, const std::string& file) {
 
 }  // namespace
 
-Path parse_path_csv(std::string_view text,
-                    const std::filesystem::path& name,
-                    const AttitudeOverride& attitude) {
-  return path_through_samples(read_samples(text, name.string()), attitude);
+Path parse_path_csv(std::string_view text, const std::filesystem::path& name) {
+  return path_through_samples(parse_samples(text, name.string()));
 }
 
-Path read_path_file(const std::filesystem::path& path, const AttitudeOverride& attitude) {
-  return parse_path_csv(read_file(path, kMaxBytes), path, attitude);
+Samples read_path_samples(const std::filesystem::path& path) {
+  return parse_samples(read_file(path, kMaxBytes), path.string());
+}
+
+Path read_path_file(const std::filesystem::path& path) {
+  return path_through_samples(read_path_samples(path));
 }
 
 }  // namespace airtruth::trajectory

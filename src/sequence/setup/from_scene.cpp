@@ -275,13 +275,25 @@ trajectory::Path drift_of(const scene::Intruder& intruder) {
                               stated.roll_deg.value_or(0)});
 }
 
+// Flight through the samples of a path_file: its angles give way to the scene's own, and the usual
+// ones of a balloon or a multirotor to both.
+trajectory::Path sampled_path(scene::Intruder intruder) {
+  trajectory::Samples samples = trajectory::read_path_samples(*intruder.path_file);
+  if (intruder.yaw_deg) samples.has_angle[0] = false;
+  if (intruder.pitch_deg) samples.has_angle[1] = false;
+  if (intruder.roll_deg) samples.has_angle[2] = false;
+  intruder.waypoints_ned_m = samples.positions_ned_m;
+  intruder.times_s = samples.times_s;
+  return trajectory::path_through_samples(samples, attitude_of(intruder));
+}
+
 trajectory::Path flown_path(const scene::Intruder& intruder, const trajectory::Path& own) {
   if (intruder.position_ned_m) return drift_of(intruder);
   const trajectory::AttitudeOverride attitude = attitude_of(intruder);
   if (intruder.encounter) return placement::path_to_approach(*intruder.encounter, own, attitude);
   return at_place(intruder.where, [&] {
     const trajectory::Path path =
-        intruder.path_file ? trajectory::read_path_file(*intruder.path_file, attitude)
+        intruder.path_file ? sampled_path(intruder)
         : intruder.speed_mps
             ? trajectory::spline_at_speed(intruder.waypoints_ned_m, *intruder.speed_mps, attitude)
             : trajectory::spline_at_times(intruder.waypoints_ned_m, intruder.times_s, attitude);

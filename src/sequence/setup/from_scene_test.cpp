@@ -290,5 +290,35 @@ TEST(Multirotor, LeansByItsSpeedOverTheGround) {
               1e-6);
 }
 
+// Eastwards at 10 m/s.
+TEST(Multirotor, TakesTheAnglesOfAPathFileAndLeansByItsSpeedWhereThereAreNone) {
+  const test_support::TemporaryFolder folder;
+  const auto angles = [&](const std::string& columns,
+                          const std::string& values,
+                          const std::string& kind,
+                          const std::string& more = "") {
+    std::ofstream(folder / "p.csv") << "time_s,north_m,east_m,down_m" + columns + "\n0,60,0,-100" +
+                                           values + "\n3,60,30,-100" + values + "\n";
+    const scene::Scene scene = scene::parse_scene(
+        "[background]\nvideo = \"a.mp4\"\n[lens]\nvertical_fov_deg = 60\n[camera]\nposition_ned_m "
+        "= "
+        "[0, 0, -100]\nvelocity_ned_mps = [0, 0, 0]\n[[distractor]]\nkind = \"" +
+            kind + "\"\npath_file = \"" + (folder / "p.csv").string() + "\"\n" + more,
+        "s.toml");
+    const auto flown = path_of(scene.intruders.at(0), camera_path(scene.camera));
+    return vector_of(numbers_of(yaw_pitch_roll(flown.at(1)->world_from_body)));
+  };
+  const auto is = [](const Vector3& found, const Vector3& expected) {
+    return (found - expected).norm() < 1e-6;
+  };
+  const std::string all = ",yaw_deg,pitch_deg,roll_deg", some = ",pitch_deg,roll_deg";
+  EXPECT_TRUE(is(angles("", "", "multirotor"), {90, -16, 0}));
+  EXPECT_TRUE(is(angles("", "", "balloon"), {90, 0, 0}));
+  EXPECT_TRUE(is(angles(all, ",80,-20,15", "multirotor"), {80, -20, 15}));
+  EXPECT_TRUE(is(angles(all, ",80,-20,15", "balloon"), {80, -20, 15}));
+  EXPECT_TRUE(is(angles(some, ",0,30", "multirotor", "yaw_deg = 10\n"), {10, 0, 30}));
+  EXPECT_TRUE(is(angles(some, ",-20,15", "multirotor", "pitch_deg = 5\n"), {90, 5, 15}));
+}
+
 }  // namespace
 }  // namespace airtruth::setup
