@@ -11,6 +11,7 @@
 
 #include "dataset/catalogue/meeting.h"
 #include "scene/scene/flock.h"
+#include "scene/scene/limits.h"
 
 namespace airtruth::catalogue {
 namespace {
@@ -199,7 +200,7 @@ DrawnMark drawn_mark(const DistractorRule& rule, Random random) {
   mark.where = rule.where;
   const double slender = mark.length_px / mark.size_px;
   mark.size_px = drawn_evenly_in_logarithm(random, rule.spot_px);
-  mark.length_px = slender * mark.size_px;
+  mark.length_px = std::min(scene::kSpotSize.high, slender * mark.size_px);
   mark.opacity = drawn(random, rule.opacity);
   mark.softness = random.uniform(rule.kind == scene::DistractorKind::kInsect ? 0.85 : 0.5, 1);
   // Reflections of a sun in front of the camera lie beyond the image's centre.

@@ -109,6 +109,19 @@ TEST(DistractorRules, AFlockIsPlacedWhereTheRuleSays) {
   }
 }
 
+// An insect is three times as long as it is wide, but no longer than a scene's mark may be.
+TEST(DistractorRules, TheLargestInsectsAreThoseOfAScene) {
+  const Catalogue catalogue =
+      catalogue_with("[[distractor]]\nkind = \"insect\"\nspot_px = [1000, 5000]\n");
+  double longest_px = 0;
+  for (std::int64_t i = 0; i < 20; ++i)
+    for (const DrawnMark& drawn : draw_distractors(catalogue.distractors, 1, i).marks) {
+      EXPECT_GE(drawn.mark.length_px, drawn.mark.size_px);
+      longest_px = std::max(longest_px, drawn.mark.length_px);
+    }
+  EXPECT_EQ(longest_px, 5000);
+}
+
 TEST(DistractorRules, AnInsectCrossesThePicture) {
   const Catalogue catalogue = catalogue_with("[[distractor]]\nkind = \"insect\"\n");
   const Expansion expansion(catalogue);

@@ -89,6 +89,8 @@ TEST(DistractorKeys, AFlockIsItsBirdsApartFromEachOther) {
 TEST(DistractorKeys, TheEffectiveSceneReadsBackAsItIs) {
   for (const std::string& keys :
        {"kind = \"bird\"\ncount = 3\nspread_m = 4\n" + kDistractorPath,
+        "kind = \"bird\"\ncount = 20\nspread_m = 4\nsize_m = 0.05\n" + kDistractorPath,
+        "kind = \"bird\"\ncount = 20\nspread_m = 4\nsize_m = 20\nflap_hz = 98\n" + kDistractorPath,
         std::string("kind = \"multirotor\"\nrotors = 6\ncolour = [0.1, 0.2, 0.3]\narm_colour = "
                     "[0.4, 0, 0]\nposition_ned_m = "
                     "[60, 1, -150]\nvelocity_ned_mps = [3, 0, 0]\nyaw_deg = 10\n"),
@@ -127,6 +129,10 @@ TEST(DistractorKeys, WrongKeysAreNamedAtTheirLine) {
   EXPECT_EQ(message_with_keys("kind = \"bird\"\ncount = 4\n" + kDistractorPath),
             "/data/s.toml:7:9: count is 4 without spread_m; expected the flock's radius in metres "
             "with it");
+  EXPECT_EQ(message_with_keys("kind = \"bird\"\ncount = 2\nspread_m = 4\nid = \"" +
+                              std::string(199, 'b') + "\"\n" + kDistractorPath),
+            "/data/s.toml:9:6: id is too long for a flock, whose members are ID-1, ID-2, ...; "
+            "expected a shorter one");
   EXPECT_EQ(message_with_keys("kind = \"bird\"\nspread_m = 4\n" + kDistractorPath),
             "/data/s.toml:7:12: spread_m has no effect without a count");
   EXPECT_EQ(message_with_keys("kind = \"dirt\"\npixel = [9, 9]\narm_colour = [0, 0, 0]\n"),

@@ -6,6 +6,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
+#include "scene/scene/limits.h"
 
 namespace airtruth::scene {
 namespace {
@@ -42,8 +43,9 @@ Vector3 free_place(Random& random,
   return place;
 }
 
-double varied(Random& random, double value, double spread) {
-  return value * (1 + spread * std::clamp(random.normal(), -2.0, 2.0));
+double varied(Random& random, double value, double spread, const Limits& limits) {
+  return std::clamp(
+      value * (1 + spread * std::clamp(random.normal(), -2.0, 2.0)), limits.low, limits.high);
 }
 
 }  // namespace
@@ -60,8 +62,8 @@ std::vector<Intruder> flock_of(const Intruder& leader,
     Intruder member = leader;
     member.id += "-" + std::to_string(k + 1);
     Distractor& one = *member.distractor;
-    one.size_m = varied(random, one.size_m, kSizeSpread);
-    one.flap_hz = varied(random, one.flap_hz, kRateSpread);
+    one.size_m = varied(random, one.size_m, kSizeSpread, kDistractorSize);
+    one.flap_hz = varied(random, one.flap_hz, kRateSpread, kStrokeRate);
     one.flap_phase = random.uniform(0, model::kStrokesOfBout);
     // A neighbour that varies as much stays apart.
     const Vector3 place = free_place(random, spread_m, 2 * one.size_m, flock);

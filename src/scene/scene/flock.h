@@ -17,8 +17,9 @@ constexpr std::size_t kMaxThings = 1000;
 // `count` intruders in place of one bird, multirotor or balloon. All fly the leader's path, each
 // displaced within a flat ellipsoid of the radius `spread_m` (a third of that in height), and none
 // nearer to another than twice its own size where the ellipsoid has the room. Sizes and stroke
-// rates differ by a few percent, and every bird is at another moment of its stroke. Ids are ID-1,
-// ID-2 and so on. The seed and the leader's id decide; a flock of one is its leader.
+// rates differ by a few percent within the ranges of their keys, and every bird is at another
+// moment of its stroke. Ids are ID-1, ID-2 and so on. The seed and the leader's id decide; a flock
+// of one is its leader.
 std::vector<Intruder> flock_of(const Intruder& leader,
                                std::int64_t count,
                                double spread_m,

@@ -61,6 +61,11 @@ inline constexpr Limits kDistortion{"a number from -1e12 to 1e12", -1e12, 1e12};
 // A place in the picture; it may lie outside the image.
 inline constexpr Limits kPixel{"pixels from -1e5 to 1e5", -1e5, 1e5};
 
+// Distractors: their size in the air, the strokes of birds, and their size on the lens.
+inline constexpr Limits kDistractorSize{"metres from 0.05 to 20", 0.05, 20};
+inline constexpr Limits kStrokeRate{"strokes a second from 0 to 100", 0, 100};
+inline constexpr Limits kSpotSize{"pixels from 1 to 5000", 1, 5000};
+
 // Light, air, optics and sensor.
 inline constexpr Limits kExposureFactor{"a number from 1e-6 to 1e4", 1e-6, 1e4};
 inline constexpr Limits kAlbedo{"a number from 0 to 1", 0, 1};

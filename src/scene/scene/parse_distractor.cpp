@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "foundation/base/files.h"
 #include "scene/scene/flock.h"
+#include "scene/scene/limits.h"
 #include "scene/scene/scene.h"
 #include "scene/scene/tables.h"
 
@@ -23,13 +25,10 @@ const TableReader::Keys kAirKeys = keys(
 const TableReader::Keys kLensKeys = {
     "pixel", "velocity_px_s", "size_px", "length_px", "softness", "opacity", "begin_s", "end_s"};
 
-constexpr Limits kSize{"metres from 0.05 to 20", 0.05, 20};
 constexpr Limits kAspect{"a number from 2 to 30", 2, 30};
-constexpr Limits kStrokeRate{"strokes a second from 0 to 100", 0, 100};
 constexpr Limits kStrokes{"strokes from -1e6 to 1e6", -1e6, 1e6};
 constexpr Limits kColour{"a number from 0 to 1", 0, 1};
 constexpr Limits kFlockRadius{"metres from 0 to 1e4", 0, 1e4};
-constexpr Limits kSpotSize{"pixels from 1 to 5000", 1, 5000};
 constexpr Limits kSpotSpeed{"pixels a second from -1e6 to 1e6", -1e6, 1e6};
 constexpr Limits kOpacity{
     .expected = "a number above 0, up to 1", .low = 0, .high = 1, .without_low = true};
@@ -46,7 +45,7 @@ using LinearColour = std::array<double, 3>;
 
 Distractor distractor_in(const TableReader& table, DistractorKind kind) {
   Distractor one =
-      usual_distractor(kind, table.number("size_m", kSize).value_or(usual_size_m(kind)));
+      usual_distractor(kind, table.number("size_m", kDistractorSize).value_or(usual_size_m(kind)));
   if (kind == DistractorKind::kBird) {
     one.plumage = table.choice<shapes::Plumage>("plumage").value_or(one.plumage);
     one.aspect_ratio = table.number("aspect_ratio", kAspect).value_or(one.aspect_ratio);
@@ -196,6 +195,10 @@ void add_distractors(const TableReader& root, Scene& scene) {
                              flock.size(),
                              kMaxThings));
     for (Intruder& one : flock) {
+      if (!is_plain_file_name(one.id))
+        table.fail("id",
+                   "id is too long for a flock, whose members are ID-1, ID-2, ...; expected a "
+                   "shorter one");
       take(table, one.id);
       scene.intruders.push_back(std::move(one));
     }

@@ -460,6 +460,8 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
       staged.path(), opened.stated.scene, opened.world.lens, opened.info, options.threads);
   FrameMaker maker(resolve(std::move(opened), options), options.stop);
   const ResolvedScene& resolved = maker.resolved();
+  // What could not be read again is an error before its frames are made.
+  scene::parse_scene(scene::toml_from_scene(resolved.scene), folder / "sequence.json");
 
   const Stopwatch running;
   clocks.frames_s = process_cpu_seconds();

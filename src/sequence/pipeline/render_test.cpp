@@ -297,6 +297,16 @@ TEST_F(Sequence, AnErrorOnTheWayLeavesNothing) {
   EXPECT_EQ(left_in_out(), std::set<std::string>{});
 }
 
+TEST_F(Sequence, WhatCouldNotBeReadAgainIsAnErrorBeforeTheFirstFrame) {
+  scene::Scene scene = scene_of("s", crossing("a", "c172/news", 60));
+  scene.weight = 2e9;
+  Options options;
+  options.progress = [](const Progress&) { FAIL() << "a frame was made"; };
+  EXPECT_THAT(test_support::error_of([&] { render(scene, out_, options); }),
+              testing::HasSubstr("expected a number from 1e-9 to 1e9"));
+  EXPECT_EQ(left_in_out(), std::set<std::string>{});
+}
+
 TEST_F(Sequence, ThePapersMethodAgreesWithTheMatte) {
   const std::string one = crossing("one", "738/738-Ryanair", 70);
   const std::string none = "[motion]\nmodel = \"none\"\n";
