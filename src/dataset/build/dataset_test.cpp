@@ -396,6 +396,17 @@ TEST_F(Build, ABackgroundThatLosesItsMaskUnderABuildIsRefused) {
               HasSubstr("sky.mp4: has not the masks with which 'sky-across-c172'"));
 }
 
+TEST_F(Build, AFlightThroughTooLongALensIsRefusedAtItsBackground) {
+  std::string text = test_support::kCatalogue;
+  const std::string stated = "vertical_fov_deg = 75";
+  text.replace(text.find(stated), stated.size(), "vertical_fov_deg = 0.01");
+  const catalogue::Catalogue catalogue = catalogue::parse_catalogue(text, "c.toml");
+  const std::string error =
+      test_support::error_of([&] { build_set(catalogue, root_ / "set", one_alone()); });
+  EXPECT_THAT(error, HasSubstr("c.toml:3:"));
+  EXPECT_THAT(error, HasSubstr("virtual flight: the focal length is 687549 px"));
+}
+
 // No sequence is there yet that states what it was made of.
 TEST_F(Build, AFlightThroughAnotherLensFileIsRefused) {
   std::string text = test_support::kCatalogue;

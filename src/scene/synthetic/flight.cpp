@@ -69,8 +69,17 @@ const FlightOptions& validated(const FlightOptions& o) {
 }
 
 lens::Lens lens_of(const FlightOptions& o) {
-  return o.lens ? *o.lens
-                : lens::pinhole_from_vertical_fov(o.vertical_fov_deg, {o.width, o.height});
+  // The table of the panorama's parts takes 2 GB there.
+  constexpr double kLongestPx = 150'000;
+  lens::Lens lens =
+      o.lens ? *o.lens : lens::pinhole_from_vertical_fov(o.vertical_fov_deg, {o.width, o.height});
+  if (!(lens.focal_px() <= kLongestPx))
+    throw Error(
+        fmt::format("virtual flight: the focal length is {:.0f} px; expected up to {:.0f}: a wider "
+                    "view or a smaller picture",
+                    lens.focal_px(),
+                    kLongestPx));
+  return lens;
 }
 
 std::uint32_t stream(const FlightOptions& o, std::string_view name) {

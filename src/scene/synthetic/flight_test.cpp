@@ -314,6 +314,28 @@ TEST(Flight, NonsenseIsAnErrorThatNamesIt) {
                 o.lens = lens::pinhole_from_vertical_fov(60, {64, 48});
               }),
               testing::HasSubstr("64 x 48"));
+  EXPECT_THAT(message([](FlightOptions& o) { o.vertical_fov_deg = 0.01; }),
+              testing::HasSubstr("the focal length is 1375099 px; expected up to 150000"));
+}
+
+// The whole panorama of this lens takes 125 GB.
+TEST(Flight, ALongLensTakesTheMemoryOfWhatItSees) {
+  FlightOptions options = bare();
+  options.width = 160;
+  options.height = 120;
+  options.vertical_fov_deg = 0.2;
+  options.frame_rate_hz = 4;
+  options.frame_count = 24;
+  const Flight flight(options);
+  int frames_of_sky = 0;
+  for (int frame = 0; frame < options.frame_count; ++frame) {
+    if (yaw_pitch_roll(flight.camera(frame).world_from_body).pitch_deg < 0.25) continue;
+    ++frames_of_sky;
+    const image::Picture picture = flight.frame(frame);
+    for (int y = 0; y < options.height; ++y)
+      for (int x = 0; x < options.width; ++x) ASSERT_GT(picture.luma().row(y)[x], 100);
+  }
+  EXPECT_GT(frames_of_sky, 3);
 }
 
 }  // namespace

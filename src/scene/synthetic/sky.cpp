@@ -8,6 +8,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "foundation/geometry/box.h"
+
 namespace airtruth::synthetic {
 
 Sky::Sky(const Vector3& sun_in_world) : sun_(sun_in_world) {
@@ -373,10 +375,8 @@ Panorama::Panorama(double texel_rad, double dip_rad)
   const float lowest = dip_ + kBelowHorizon;
   const float edge = radius_ * (std::sqrt((1 + lowest) / (1 - lowest)) + 0.01F) + 4;
   blocks_ = static_cast<int>(2 * edge) / kBlock + 1;
-  size_ = blocks_ * kBlock;
-  centre_ = 0.5F * static_cast<float>(size_);
-  texels_.assign(pixels_in(size_, size_), LinearRgb::Zero());
-  wanted_.assign(pixels_in(blocks_, blocks_), 0);
+  centre_ = 0.5F * static_cast<float>(blocks_ * kBlock);
+  numbers_.assign(pixels_in(blocks_, blocks_), 0);
 }
 
 void Panorama::want(float north, float east, float up) {
@@ -386,17 +386,22 @@ void Panorama::want(float north, float east, float up) {
   const int y = static_cast<int>(centre_ + east * scale) / kBlock;
   for (int j = std::max(y - 2, 0); j <= std::min(y + 2, blocks_ - 1); ++j)
     for (int i = std::max(x - 2, 0); i <= std::min(x + 2, blocks_ - 1); ++i)
-      wanted_[static_cast<std::size_t>(j * blocks_ + i)] = 1;
+      numbers_[static_cast<std::size_t>(j * blocks_ + i)] = 1;
 }
 
 void Panorama::draw(const Sky& sky, const Clouds& clouds, const Hills& hills, std::uint32_t seed) {
   const float texel_rad = 1 / radius_;
+  std::int32_t marked = 0;
+  for (std::int32_t& number : numbers_)
+    if (number != 0) number = ++marked;
+  texels_.assign(place_in(marked + 1, 0, 0), LinearRgb::Zero());
   tbb::parallel_for(0, blocks_ * blocks_, [&](int block) {
-    if (wanted_[static_cast<std::size_t>(block)] == 0) return;
+    const std::int32_t number = numbers_[static_cast<std::size_t>(block)];
+    if (number == 0) return;
     const int left = block % blocks_ * kBlock;
     const int top = block / blocks_ * kBlock;
-    for (int y = top; y < top + kBlock; ++y)
-      for (int x = left; x < left + kBlock; ++x) {
+    for (int y = top; y < top + kSide; ++y)
+      for (int x = left; x < left + kSide; ++x) {
         const double u = (static_cast<float>(x) - centre_) / radius_;
         const double v = (static_cast<float>(y) - centre_) / radius_;
         const double square = u * u + v * v;
@@ -404,7 +409,7 @@ void Panorama::draw(const Sky& sky, const Clouds& clouds, const Hills& hills, st
         const Vector3 direction(u * (1 + up), v * (1 + up), -up);
         LinearRgb colour = clouds.seen_through(direction, sky.at(direction));
         cover(direction, dip_, hills, texel_rad, sky, seed, colour);
-        texels_[index_in(size_, x, y)] = colour;
+        texels_[place_in(number, x - left, y - top)] = colour;
       }
   });
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
 #include "scene/synthetic/noise.h"
 
@@ -106,24 +106,36 @@ class Panorama {
     const float y = centre_ + east * scale;
     const int ix = static_cast<int>(x);
     const int iy = static_cast<int>(y);
-    const LinearRgb* p = &texels_[index_in(size_, ix, iy)];
+    const LinearRgb* p = &texels_[place_in(block_at(ix, iy), ix % kBlock, iy % kBlock)];
     const float fx = x - static_cast<float>(ix);
     const float fy = y - static_cast<float>(iy);
     const LinearRgb upper = p[0] + (p[1] - p[0]) * fx;
-    const LinearRgb lower = p[size_] + (p[size_ + 1] - p[size_]) * fx;
+    const LinearRgb lower = p[kSide] + (p[kSide + 1] - p[kSide]) * fx;
     return upper + (lower - upper) * fy;
   }
 
  private:
-  // Side of a part that want() marks, in texels.
+  // Side of a part that want() marks, in texels, and of what is kept of it: with the first row and
+  // the first column of its neighbours, between which and its own at() interpolates.
   static constexpr int kBlock = 16;
-  int size_ = 0;
+  static constexpr int kSide = kBlock + 1;
+  std::int32_t block_at(int x, int y) const {
+    return numbers_[static_cast<std::size_t>(y / kBlock * blocks_ + x / kBlock)];
+  }
+  static std::size_t place_in(std::int32_t number, int x, int y) {
+    return static_cast<std::size_t>(number) * (kSide * kSide) +
+           static_cast<std::size_t>(y * kSide + x);
+  }
+
   int blocks_ = 0;
   float dip_ = 0;
   float radius_ = 0;
   float centre_ = 0;
+  // Of the marked parts, each at its number, behind one without light. Through a long lens they are
+  // a small share of the map.
   std::vector<LinearRgb> texels_;
-  std::vector<std::uint8_t> wanted_;
+  // Of each part of the map; 0 where it is not marked.
+  std::vector<std::int32_t> numbers_;
 };
 
 }  // namespace airtruth::synthetic
