@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <map>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -295,6 +297,25 @@ TEST_F(Sequence, AnErrorOnTheWayLeavesNothing) {
   EXPECT_THROW(render(scene_of("broken", crossing("a", "c172/news", 60)), out_, options), Error);
   EXPECT_GE(done, 3);
   EXPECT_EQ(left_in_out(), std::set<std::string>{});
+}
+
+TEST_F(Sequence, AVirtualFlightHasTheClockOfItsRate) {
+  const std::vector<std::pair<double, double>> rates = {{24, 24},
+                                                        {12.5, 12.5},
+                                                        {7.5, 7.5},
+                                                        {1.5, 1.5},
+                                                        {29.97, 30000 / 1001.0},
+                                                        {59.94, 60000 / 1001.0},
+                                                        {23.976, 24000 / 1001.0}};
+  for (const auto& [stated_hz, clock_hz] : rates) {
+    synthetic::FlightOptions options;
+    options.width = options.height = 64;
+    options.frame_count = 3;
+    options.frame_rate_hz = stated_hz;
+    const fs::path file = out_ / fmt::format("{}.mp4", stated_hz);
+    demo::write_flight(synthetic::Flight(options), file, {.format = video::Format::kMp4});
+    EXPECT_NEAR(frames_of(file).back().time_s, 2 / clock_hz, 1e-9) << stated_hz;
+  }
 }
 
 TEST_F(Sequence, WhatCouldNotBeReadAgainIsAnErrorBeforeTheFirstFrame) {
