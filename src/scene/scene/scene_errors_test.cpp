@@ -107,8 +107,9 @@ TEST(SceneErrors, WrongTypes) {
                 .find(string_for_number.substr(string_for_number.find(':'))),
             std::string::npos);
   EXPECT_EQ(with_background("video = 3"), "s.toml:3:9: video is an integer; expected a string");
-  EXPECT_EQ(with_top("seed = 1.5\n"),
-            "s.toml:1:8: seed is 1.5; expected a whole number not below 0");
+  for (const char* seed : {"seed = 1.5\n", "seed = 7.0\n"})
+    EXPECT_EQ(with_top(seed),
+              "s.toml:1:8: seed is a number with a fraction; expected a whole number not below 0");
   EXPECT_EQ(with_top("lens = 3\n").substr(0, 30), "s.toml:4:1: is not TOML: Error");
   EXPECT_EQ(with_rest("[[camera]]\n"),
             "s.toml:10:1: camera is an array of tables; expected [camera], with single brackets");

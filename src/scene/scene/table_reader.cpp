@@ -177,12 +177,7 @@ std::optional<std::int64_t> TableReader::whole(std::string_view key,
   const std::string expected = high == std::numeric_limits<std::int64_t>::max()
                                    ? fmt::format("a whole number not below {}", low)
                                    : fmt::format("a whole number from {} to {}", low, high);
-  if (!value->is_integer()) {
-    const std::string found = value->is_floating_point()
-                                  ? fmt::format("{}", **value->as_floating_point())
-                                  : words_of(value->type());
-    fail_at(place(*value), key, found, expected);
-  }
+  if (!value->is_integer()) fail_at(place(*value), key, words_of(value->type()), expected);
   const std::int64_t number = **value->as_integer();
   if (number < low || number > high)
     fail_at(place(*value), key, fmt::format("{}", number), expected);
