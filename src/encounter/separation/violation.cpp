@@ -80,27 +80,15 @@ namespace {
 constexpr double kFt = kMetresOfFoot;
 constexpr double kNmi = kMetresOfNauticalMile;
 
-// The source's own units are kept in the numbers.
+// The source's own units are kept in the numbers; docs/formats/scene.md names the document of each.
 constexpr std::array kVolumes = {
-    NamedVolume{"do365-phase1",
-                {0.66 * kNmi, 450 * kFt, 35, 0},
-                "RTCA DO-365B, well clear of cooperative aircraft en route (phase I)"},
-    NamedVolume{"do365-preventive",
-                {0.66 * kNmi, 700 * kFt, 35, 0},
-                "RTCA DO-365B, preventive alert en route (phase I)"},
-    NamedVolume{"do365-terminal",
-                {1500 * kFt, 450 * kFt, 0, 0},
-                "RTCA DO-365B, well clear in the terminal area (phase II)"},
-    NamedVolume{"do365-non-cooperative",
-                {2200 * kFt, 450 * kFt, 0, 0},
-                "RTCA DO-365B, well clear of non-cooperative aircraft"},
-    NamedVolume{"do365-buffered",
-                {1 * kNmi, 450 * kFt, 35, 20},
-                "NASA DAIDALUS v2, buffered well clear of DO-365 phase I"},
-    NamedVolume{"f3442",
-                {2000 * kFt, 250 * kFt, 0, 0},
-                "ASTM F3442/F3442M-23, well clear of small unmanned aircraft"},
-    NamedVolume{"nmac", {500 * kFt, 100 * kFt, 0, 0}, "RTCA DO-365B, near mid-air collision"},
+    NamedVolume{"do365-phase1", {0.66 * kNmi, 450 * kFt, 35, 0}},
+    NamedVolume{"do365-preventive", {0.66 * kNmi, 700 * kFt, 35, 0}},
+    NamedVolume{"do365-terminal", {1500 * kFt, 450 * kFt, 0, 0}},
+    NamedVolume{"do365-non-cooperative", {2200 * kFt, 450 * kFt, 0, 0}},
+    NamedVolume{"do365-buffered", {1 * kNmi, 450 * kFt, 35, 20}},
+    NamedVolume{"f3442", {2000 * kFt, 250 * kFt, 0, 0}},
+    NamedVolume{"nmac", {500 * kFt, 100 * kFt, 0, 0}},
 };
 
 }  // namespace

@@ -27,8 +27,6 @@ struct Volume {
 struct NamedVolume {
   std::string_view name;
   Volume volume;
-  // The document that the numbers are from.
-  std::string_view source;
 };
 
 // A volume whose violation is asked for, under its name.
