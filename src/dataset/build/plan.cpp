@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "dataset/build/inputs.h"
+#include "dataset/catalogue/meeting.h"
 #include "dataset/labelled/labelled_set.h"
 #include "foundation/base/error.h"
 #include "scene/scene/camera_keys.h"
@@ -61,7 +62,9 @@ class Planner {
     const catalogue::Draws draws = catalogue::draw_in_view(item, catalogue_, facts.files);
     plan_.draws += draws.drawn;
     plan_.never_in_view += draws.unseen;
-    const std::int64_t frames = catalogue::clip_frames(item, catalogue_, facts.files);
+    const std::int64_t first_frame = catalogue_.backgrounds[item.background].first_frame;
+    const std::int64_t frames =
+        catalogue::clip_over(facts.files, first_frame, item.frame_count).frames;
     if (item.frame_count > 0) item.frame_count = frames;
     ++plan_.sequences;
     plan_.frames += frames;
@@ -155,6 +158,7 @@ class Planner {
       plan_.calibration_s += whole * kCosts.calibrated;
       plan_.core_s += whole * kCosts.calibrated;
     }
+    facts.files.frames = end_of(background, facts.files.frames);
     return facts;
   }
 

@@ -254,15 +254,6 @@ std::int64_t random_first_frame(const Item& item,
 
 }  // namespace
 
-std::int64_t clip_frames(const Item& item,
-                         const Catalogue& catalogue,
-                         const BackgroundFiles& files) {
-  const Background& background = catalogue.backgrounds[item.background];
-  const std::int64_t left = end_of(background, files.frames) - background.first_frame;
-  if (left <= 0) return item.frame_count;
-  return item.frame_count > 0 ? std::min(item.frame_count, left) : left;
-}
-
 DrawnClip clip_over(const BackgroundFiles& files, std::int64_t first_frame, std::int64_t frames) {
   const std::int64_t left = files.frames - first_frame;
   if (left > 0) frames = frames > 0 ? std::min(frames, left) : left;
@@ -274,15 +265,28 @@ DrawnClip clip_over(const BackgroundFiles& files, std::int64_t first_frame, std:
   return clip;
 }
 
+namespace {
+
+// The clip of an item from a frame of its background on. A sample of a stream shows a part of a
+// passage, wherever that is over its background.
+DrawnClip drawn_clip(const Item& item, std::int64_t first_frame, const BackgroundFiles& files) {
+  DrawnClip clip = clip_over(files, first_frame, item.frame_count);
+  if (!item.first_frame || (item.rule != nullptr && !item.rule->approach)) return clip;
+  clip.frames = item.frame_count;
+  clip.times_s = {};
+  return clip;
+}
+
+}  // namespace
+
 Draws draw_in_view(Item& item, const Catalogue& catalogue, const BackgroundFiles& files) {
   if (files.camera) item.scene.camera = *files.camera;
   setup::take_pixel_shape(item.scene.lens, {files.width, files.height}, files.pixel_aspect);
   if (item.encounter_rule == nullptr) return {};
   check_length(item, files);
-  // A sample of a stream shows a part of the sequence, wherever that is over its background.
-  const Views views{setup::lens_of(item.scene.lens, {files.width, files.height}),
-                    item.first_frame ? item.frame_count : clip_frames(item, catalogue, files),
-                    files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
+  const DrawnClip clip =
+      drawn_clip(item, catalogue.backgrounds[item.background].first_frame, files);
+  const Views views{setup::lens_of(item.scene.lens, clip.size), clip.frames, clip.frame_rate_hz};
   std::erase_if(item.scene.intruders, scene::is_aircraft);
   std::vector<scene::Intruder> distractors = std::exchange(item.scene.intruders, {});
   const Draws draws = add_encounter(item.scene, *item.encounter_rule, item.index_in_rule, &views);
@@ -303,13 +307,11 @@ void place(Item& item,
   draw_in_view(item, catalogue, files);
   if (!item.first_frame && item.has_random_start())
     placed.first_frame = random_first_frame(item, background.first_frame, files);
-  DrawnClip clip = clip_over(files, placed.first_frame, item.frame_count);
+  DrawnClip clip = drawn_clip(item, placed.first_frame, files);
   const std::int64_t left = files.frames - placed.first_frame;
   if (background.frame_count && left > 0)
     placed.frame_count = std::min(placed.frame_count.value_or(left), left);
   if (clip.frames == 0) clip.frames = kProvisionalFrames;
-  // A sample of a stream shows a part of an encounter, wherever that is over its background.
-  if (item.first_frame && item.rule != nullptr && item.rule->approach) clip.times_s = {};
   if (item.rule != nullptr)
     for (std::size_t k = 0; k < item.drawn.encounters.size(); ++k)
       meet(item.scene.intruders[k], item.scene, item.drawn.encounters[k], clip, shared);

@@ -26,7 +26,8 @@ struct BackgroundFiles {
   int height = 0;
   double pixel_aspect = 1;   // width over height of a pixel
   double frame_rate_hz = 0;  // 0: unknown
-  std::int64_t frames = 0;   // counted from the video's first frame; 0: unknown
+  // To the end of what the background uses, counted from the video's first frame; 0: unknown.
+  std::int64_t frames = 0;
   // Of a background with a flight log: its camera with the time of first_frame on the video's clock
   // and, where neither the scene nor the log states an attitude, a level one.
   std::optional<scene::Camera> camera;
@@ -96,14 +97,8 @@ Item stream_item(const Catalogue& catalogue,
 // intruders and name.
 scene::Scene scene_over(const Catalogue& catalogue, std::size_t background);
 
-// The frames of an item's clip: as many as it states, else all, as far as its background goes; 0:
-// it states none, and the length of its background is unknown.
-std::int64_t clip_frames(const Item& item,
-                         const Catalogue& catalogue,
-                         const BackgroundFiles& files);
-
-// The clip of so many frames from one of the background's on, or fewer where the background ends;
-// 0: of an unknown number.
+// The clip of so many frames (0: all) from one of the background's on, or fewer where the
+// background ends; 0: of an unknown number.
 DrawnClip clip_over(const BackgroundFiles& files, std::int64_t first_frame, std::int64_t frames);
 
 // Gives an item's scene the camera and the pixels' shape of its background, and draws the intruders

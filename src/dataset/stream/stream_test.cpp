@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/stream/stream.h"
 
+#include <algorithm>
 #include <cmath>
 #include <future>
 #include <map>
@@ -333,6 +334,23 @@ TEST_F(StreamOfFlights, SoAreEncountersFromWhereTheyAreInView) {
   EXPECT_GE(seen, 20);
   for (const std::int64_t index : {0, 2})
     expect_as_rendered(stream, index, folder_->path() / "encounters");
+}
+
+// The background lasts 0.8 s and the passages 10 s. Head-on at 25 + 50 m/s and 40 m to the right,
+// an aircraft leaves the lens's 75 degrees 40 m / (tan(30 degrees) * 4/3) = 52 m ahead, 0.693 s
+// before its closest approach.
+TEST_F(StreamOfFlights, APassageIsNoShorterOverAShortBackground) {
+  const Stream stream = stream_of(
+      background("flight3") +
+      "[[random]]\ncount = 50\nframe_count = 300\naircraft = [\"c172/news\"]\n[random.encounter]\n"
+      "cpa_right_m = 40\ncourse_deg = 180\nspeed_mps = 50\n[stream]\n");
+  double latest_s = 0;
+  for (std::int64_t index = 0; index < 24; ++index) {
+    const double left_s = stream.scene(index).intruders.at(0).encounter->cpa_time_s;
+    EXPECT_GT(left_s, 0.69) << index;
+    latest_s = std::max(latest_s, left_s);
+  }
+  EXPECT_GT(latest_s, 2);
 }
 
 TEST_F(StreamOfFlights, WhatIsPutOverARunIsDrawnForEachSampleByTheCountsOfTheRules) {
