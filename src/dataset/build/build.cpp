@@ -22,6 +22,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dataset/build/inputs.h"
+#include "dataset/catalogue/encounter_rule.h"
 #include "dataset/catalogue/folder.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
@@ -56,6 +57,14 @@ bool is_of_a_full_disk(const std::exception& error) {
   return std::ranges::any_of(std::array{ENOSPC, EDQUOT, EROFS}, [&](int reason) {
     return what.find(std::generic_category().message(reason)) != std::string_view::npos;
   });
+}
+
+// Of a sequence of [[encounter_model]] the type that it most likely has.
+std::string first_aircraft(const catalogue::Item& item) {
+  if (item.encounter_rule != nullptr)
+    return wanted_type(*item.encounter_rule, static_cast<std::uint64_t>(item.index_in_rule), 0)
+        .name;
+  return item.scene.intruders.empty() ? "" : item.scene.intruders.front().aircraft;
 }
 
 // One build: it makes its share of the catalogue on several threads.
@@ -104,8 +113,7 @@ class Work {
         if (kept.empty()) kept = folder_.sequence(item);
         continue;
       }
-      const auto& intruders = item.scene.intruders;
-      ordered.emplace_back(intruders.empty() ? "" : intruders.front().aircraft, i);
+      ordered.emplace_back(first_aircraft(item), i);
       if (ordered.size() == kMaxOrdered) put_in_order();
       is_used_[item.background] = true;
       // A clip that begins at a random frame is measured from its own first frame, when it is made.

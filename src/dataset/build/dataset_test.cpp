@@ -272,6 +272,31 @@ TEST_F(Build, OfManyMissingSequencesTenAreNamedAndTheOthersCounted) {
   EXPECT_THAT(found.faults[10], HasSubstr("5 more sequences of the catalogue are not there"));
 }
 
+// 160x120 at 30 frames a second.
+void write_small_clip(const fs::path& video, int frames) {
+  synthetic::FlightOptions options;
+  options.width = 160;
+  options.height = 120;
+  options.frame_count = frames;
+  demo::write_flight(synthetic::Flight(options), video, {.format = video::Format::kMkv});
+}
+
+// Beside the copy of the catalogue in the set there is no own.csv.
+TEST_F(Build, ASetOfEncountersIsFinishedWithoutTheCamerasPathFile) {
+  write_file(root_ / "own.csv", "time_s,north_m,east_m,down_m\n0,0,0,-300\n20,500,0,-300\n");
+  write_small_clip(root_ / "sky.mkv", 24);
+  const catalogue::Catalogue catalogue = catalogue::parse_catalogue(
+      "[[background]]\nname = \"sky\"\nvideo = \"sky.mkv\"\nlens = { vertical_fov_deg = 60 }\n"
+      "camera = { path_file = \"own.csv\" }\nmotion = { model = \"none\" }\n[[encounter_model]]\n"
+      "kind = \"geometric\"\nframe_count = 8\naircraft = [\"c172/news\"]\nin_view = false\n",
+      root_ / "c.toml");
+  const fs::path set = root_ / "set";
+  ASSERT_EQ(build_set(catalogue, set, {}).made, 1);
+  EXPECT_EQ(build::status(set).whole, 1);
+  EXPECT_THAT(verify(set, {}).faults, testing::IsEmpty());
+  EXPECT_TRUE(finish(set));
+}
+
 // What the clip of a background does not tell is said for the first sequence over it alone.
 TEST_F(Build, AWarningIsSaidOnceForABackground) {
   std::string text = test_support::kCatalogue;

@@ -348,15 +348,6 @@ bool has_second(const EncounterRule& rule, std::int64_t index) {
   return std::fmod(turned, 1.0) < rule.two_intruders;
 }
 
-// The type of an intruder, each as often as the others within one in the whole rule.
-const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, std::uint64_t k) {
-  const pairing::Strata strata(
-      Seed(rule.seed).stream("types of intruder", k)(), static_cast<std::uint64_t>(rule.count), 1);
-  return rule.types[static_cast<std::size_t>(
-      strata.spaced(index % static_cast<std::uint64_t>(rule.count), 0) *
-      static_cast<double>(rule.types.size()))];
-}
-
 // Of a long clip not every frame is looked at.
 std::int64_t look_step(const Views& views) { return 1 + views.frames / kMostLooks; }
 
@@ -367,6 +358,14 @@ double seen_s(const scene::Intruder& intruder, const scene::Camera& camera, cons
 }
 
 }  // namespace
+
+const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, std::uint64_t k) {
+  const pairing::Strata strata(
+      Seed(rule.seed).stream("types of intruder", k)(), static_cast<std::uint64_t>(rule.count), 1);
+  return rule.types[static_cast<std::size_t>(
+      strata.spaced(index % static_cast<std::uint64_t>(rule.count), 0) *
+      static_cast<double>(rule.types.size()))];
+}
 
 std::vector<std::int64_t> frames_in_view(const scene::Intruder& intruder,
                                          const scene::Camera& camera,

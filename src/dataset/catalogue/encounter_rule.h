@@ -86,6 +86,10 @@ fs::path kept_model(const fs::path& folder, const fs::path& model_file);
 std::vector<EncounterRule> encounter_rules(const scene::TableReader& root,
                                            const Catalogue& catalogue);
 
+// The type that intruder k of sequence `index` is of where its class flies the track: each as often
+// as the others within one in the whole rule.
+const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, std::uint64_t k);
+
 // Gives the scene, whose camera is the own aircraft, the intruders of sequence `index` and, where
 // they come from a model, its weight: the product of those of the intruders. A negative sequence
 // gets none. Types are taken evenly in turn where their class flies the track, else one that does,

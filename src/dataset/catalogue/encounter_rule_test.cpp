@@ -51,6 +51,13 @@ class EncounterModel : public testing::Test {
   fs::path folder_ = temporary_.path();
 };
 
+// A sequence with the intruders that are drawn first, in view or not.
+Item first_drawn(const Catalogue& catalogue, std::int64_t index) {
+  Item item = Expansion(catalogue).at(index);
+  add_encounter(item.scene, *item.encounter_rule, index);
+  return item;
+}
+
 constexpr const char* kBayes = "kind = \"bayes\"\nmodel = \"small.txt\"\n";
 
 struct Closest {
@@ -73,10 +80,9 @@ TEST_F(EncounterModel, AStatedGeometryPassesWithinATenthOfAMetre) {
   const Catalogue catalogue = with(
       "kind = \"geometric\"\ncount = 12\ncpa_time_s = 4.3\nhmd_m = 120\nvmd_m = [-60, 60]\n"
       "speed_mps = [40, 60]\nturn_rate_dps = [-3, 3]\nclimb_mps = [-2, 2]\n");
-  const Expansion expansion(catalogue);
-  ASSERT_EQ(expansion.size(), 12);
+  ASSERT_EQ(Expansion(catalogue).size(), 12);
   for (std::int64_t i = 0; i < 12; ++i) {
-    const Item item = expansion.at(i);
+    const Item item = first_drawn(catalogue, i);
     ASSERT_EQ(item.scene.intruders.size(), 1u);
     EXPECT_FALSE(item.scene.weight.has_value());
     const Closest closest = closest_of(item.scene, item.scene.intruders[0], 8);
@@ -91,7 +97,7 @@ TEST_F(EncounterModel, AGeometryThatTurnsComesNoNearerAtAnotherTime) {
       "kind = \"geometric\"\ncount = 20\nhmd_m = [200, 300]\nspeed_mps = [40, 60]\n"
       "turn_rate_dps = [-40, 40]\n");
   for (std::int64_t i = 0; i < 20; ++i) {
-    const Item item = Expansion(catalogue).at(i);
+    const Item item = first_drawn(catalogue, i);
     // The path is a spline through samples that the draw joins by straight lines.
     EXPECT_GE(closest_of(item.scene, item.scene.intruders.at(0), 8).distance_m, 185) << i;
   }
@@ -168,14 +174,13 @@ TEST_F(EncounterModel, TheAircraftFitsTheSpeed) {
        {std::pair("150", "738"), std::pair("50", "c172"), std::pair("28", "Cub")}) {
     const Catalogue catalogue =
         with(std::string("kind = \"geometric\"\ncount = 8\nspeed_mps = ") + speed + "\n");
-    const Expansion expansion(catalogue);
     for (std::int64_t i = 0; i < 8; ++i)
-      EXPECT_THAT(expansion.at(i).scene.intruders.at(0).aircraft,
+      EXPECT_THAT(first_drawn(catalogue, i).scene.intruders.at(0).aircraft,
                   testing::StartsWith(std::string(type) + "/"));
   }
   // No aircraft of the rule flies 400 m/s: the fastest comes nearest, and the plan says so.
   const Catalogue fast = with("kind = \"geometric\"\ncount = 2\nspeed_mps = 400\n");
-  EXPECT_THAT(Expansion(fast).at(0).scene.intruders.at(0).aircraft, testing::StartsWith("738/"));
+  EXPECT_THAT(first_drawn(fast, 0).scene.intruders.at(0).aircraft, testing::StartsWith("738/"));
   EXPECT_EQ(build::plan_of(fast, {}, {}).not_flyable, 2);
 }
 
@@ -184,9 +189,8 @@ TEST_F(EncounterModel, NegativesAndSecondIntrudersAreTheSharesThatWereAskedFor) 
       "kind = \"geometric\"\ncount = 200\nnegatives = 0.05\ntwo_intruders = 0.1\nvmd_m = [0, "
       "100]\n");
   int of[3] = {0, 0, 0};
-  const Expansion expansion(catalogue);
   for (std::int64_t i = 0; i < 200; ++i) {
-    const scene::Scene scene = expansion.at(i).scene;
+    const scene::Scene scene = first_drawn(catalogue, i).scene;
     ++of[scene.intruders.size()];
     if (scene.intruders.empty()) continue;
     EXPECT_EQ(scene.intruders[0].id, "intruder-1");
@@ -202,8 +206,8 @@ TEST_F(EncounterModel, ADataSetKeepsItsModel) {
   EXPECT_EQ(read_file(root / "models" / "small.txt"), test_support::kSmallModel);
   fs::remove(folder_ / "small.txt");
   const Catalogue copy = read_catalogue(root / "catalogue.toml");
-  EXPECT_EQ(Expansion(copy).at(2).scene.intruders.at(0).waypoints_ned_m,
-            Expansion(catalogue).at(2).scene.intruders.at(0).waypoints_ned_m);
+  EXPECT_EQ(first_drawn(copy, 2).scene.intruders.at(0).waypoints_ned_m,
+            first_drawn(catalogue, 2).scene.intruders.at(0).waypoints_ned_m);
   open_folder(copy, root);
   write_file(folder_ / "small.txt", std::string(test_support::kSmallModel) + "\n");
   EXPECT_THROW(open_folder(catalogue, root), Error);
@@ -251,13 +255,13 @@ TEST_F(EncounterModel, EachFaultNamesItsLine) {
 TEST_F(EncounterModel, ATrackBelowTheGroundIsRefusedOrDrawnAgain) {
   const std::string low = "vmd_m = [-890, -880]\n";
   const Catalogue stated = with("kind = \"geometric\"\n" + low);
-  EXPECT_THROW(Expansion(stated).at(0), Error);
+  EXPECT_THROW(first_drawn(stated, 0), Error);
   const Catalogue drawn = with(std::string(kBayes) + low);
-  EXPECT_THROW(Expansion(drawn).at(0), Error);
+  EXPECT_THROW(first_drawn(drawn, 0), Error);
   for (const std::string& kind : {std::string(kBayes), std::string("kind = \"geometric\"\n")}) {
     const Catalogue some = with(kind + "count = 10\nvmd_m = [-1800, 0]\n");
     for (std::int64_t i = 0; i < 10; ++i) {
-      const Item item = Expansion(some).at(i);
+      const Item item = first_drawn(some, i);
       for (const Vector3& position : item.scene.intruders.at(0).waypoints_ned_m)
         EXPECT_LE(position.z(), -30) << kind;
     }

@@ -141,7 +141,6 @@ Item item_of(const Catalogue& catalogue, const EncounterRule& rule, std::int64_t
       stratified_background(rule.backgrounds, catalogue.backgrounds, rule.seed, rule.count, index));
   item.encounter_rule = &rule;
   item.index_in_rule = index;
-  add_encounter(item.scene, rule, index);
   return item;
 }
 

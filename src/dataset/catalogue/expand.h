@@ -52,8 +52,8 @@ struct Item {
   bool has_random_start() const { return rule != nullptr && rule->start == ClipStart::kRandom; }
   // In the scene already, with provisional places until place().
   DrawnDistractors distractors;
-  // Of a sequence of [[encounter_model]]: its rule, and its number there. Until place() its
-  // intruders are the first that are drawn, whether or not they are in view.
+  // Of a sequence of [[encounter_model]]: its rule, and its number there. It has no aircraft until
+  // place(), since they pass the camera's path, whose files a copy of the catalogue need not have.
   const EncounterRule* encounter_rule = nullptr;
   std::int64_t index_in_rule = 0;
 };
