@@ -8,6 +8,7 @@
 
 #include "dataset/build/build.h"
 #include "dataset/build/inputs.h"
+#include "dataset/build/plan.h"
 #include "dataset/build/verify.h"
 #include "dataset/catalogue/folder.h"
 #include "dataset/labelled/import.h"
@@ -295,6 +296,24 @@ TEST_F(Build, ASetOfEncountersIsFinishedWithoutTheCamerasPathFile) {
   EXPECT_EQ(build::status(set).whole, 1);
   EXPECT_THAT(verify(set, {}).faults, testing::IsEmpty());
   EXPECT_TRUE(finish(set));
+}
+
+// A receiver that has its fix after 1.6 of the video's 2 s.
+TEST_F(Build, ALogMayBeginAfterItsVideoAndBeforeTheFirstFrame) {
+  write_file(root_ / "late.srt",
+             "1\n00:00:01,600 --> 00:00:01,700\n[latitude: 47.0000] [longitude: 8] [rel_alt: 300 "
+             "abs_alt: 300]\n\n2\n00:00:02,300 --> 00:00:02,400\n[latitude: 47.0001] "
+             "[longitude: 8] [rel_alt: 300 abs_alt: 300]\n");
+  write_small_clip(root_ / "sky.mkv", 60);
+  const catalogue::Catalogue catalogue = catalogue::parse_catalogue(
+      "[[background]]\nname = \"sky\"\nvideo = \"sky.mkv\"\nfirst_frame = 54\n"
+      "lens = { vertical_fov_deg = 60 }\ncamera = { log = \"late.srt\" }\n"
+      "motion = { model = \"none\" }\n[[random]]\nframe_count = 2\naircraft = [\"c172/news\"]\n"
+      "[[encounter_model]]\nkind = \"geometric\"\nframe_count = 2\naircraft = [\"c172/news\"]\n"
+      "in_view = false\n",
+      root_ / "c.toml");
+  EXPECT_EQ(plan_of(catalogue, {}, {}).sequences, 2);
+  EXPECT_EQ(build_set(catalogue, root_ / "set", {}).made, 2);
 }
 
 // What the clip of a background does not tell is said for the first sequence over it alone.

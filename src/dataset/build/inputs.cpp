@@ -168,6 +168,11 @@ void check_background(const catalogue::Catalogue& catalogue, std::size_t place) 
     throw Error("mask has no effect with flight, which has a mask of its own", background.where);
   scene::Scene scene = catalogue::scene_over(catalogue, place);
   scene.background.mask = background.mask;
+  // A log on the video's clock is asked for its part from there on.
+  if (const auto* video = std::get_if<fs::path>(&background.source)) {
+    scene.background.video = *video;
+    scene.background.first_frame = background.first_frame;
+  }
   video::StreamInfo info = stream_of(background);
   video::check_output(info, scene.output.video, background.where);
   info.frame_count_estimate = 0;  // unknown
