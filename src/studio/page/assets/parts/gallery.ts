@@ -67,8 +67,9 @@ export class Gallery extends DialogPart {
     void this.search();
   }
 
-  // Pictures that are still to come would hold up those of the frame.
+  // Pictures that are still to come would hold up those of the frame. What was not chosen is asked for no more.
   protected override closed(): void {
+    this.studio.store.put({replaces: null, addsAt: null});
     this.asked += 1;
     this.cards.replaceChildren();
   }
@@ -118,7 +119,7 @@ export class Gallery extends DialogPart {
 
   private chosen(choice: Choice): void {
     const {replaces, addsAt} = this.now;
-    this.studio.store.put({dialog: null, replaces: null, addsAt: null});
+    this.studio.store.put({dialog: null});
     if (replaces)
       this.studio.edit([{set: [...(replaces as Path), 'aircraft'], to: choice.aircraft ?? ''}]);
     else
