@@ -186,6 +186,24 @@ class Slurm(unittest.TestCase):
         log = re.search(r'(?m)^#SBATCH --output="((?:[^"\\]|\\.)*)"$', work).group(1)
         self.assertEqual(re.sub(r"\\(.)", r"\1", log).replace("%%", "%"), path(odd, "out", "slurm", "work-%a.log"))
 
+    def test_a_job_is_found_among_notes_and_none_is_left_alone(self):
+        note = "echo 'sbatch: note: 1234 core hours are left' >&2\n"
+        write("bin/sbatch", f"#!/bin/sh\n{note}echo \"$*\" >> calls\n[ -e refuses ] && case \"$*\" in *afterany*) echo 'sbatch: error: limit' >&2; exit 1;; esac\necho '4711;far'\n{note}")
+        write("bin/scancel", "#!/bin/sh\necho \"$*\" > cancelled\n")
+        for name in ("sbatch", "scancel"):
+            os.chmod(path("bin", name), 0o755)
+        submit = lambda out: run("dataset", "submit", write("noted.toml", SKY + RANDOM), "--out", path(out), "--slurm", env={**os.environ, "PATH": path("bin") + ":" + os.environ["PATH"]})
+        done = submit("noted")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(path("calls")) as calls:
+            self.assertIn("--dependency=afterany:4711 ", calls.read().splitlines()[1])
+        write("refuses", "")
+        done = submit("refused")
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+        self.assertIn("sbatch failed: sbatch: error: limit", done.stderr)
+        with open(path("cancelled")) as cancelled:
+            self.assertEqual(cancelled.read(), "--clusters=far 4711\n")
+
     def test_a_path_that_no_script_can_hold_is_refused(self):
         catalogue = write("plain.toml", SKY + RANDOM)
         for name in ("line\nbreak", "back\\slash"):

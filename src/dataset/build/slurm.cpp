@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -98,8 +99,11 @@ std::string verify_script(const fs::path& out,
                      shell_word(out.string()));
 }
 
-// Returns the first line that a command prints. Throws Error where the command fails.
-std::string first_line(const std::string& command) {
+struct Ran {
+  bool is_done = false;
+  std::vector<std::string> lines;  // of both outputs, but for empty ones
+};
+Ran run_in_shell(const std::string& command) {
   FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
   check(pipe != nullptr, "a process can be started");
   std::string output;
@@ -107,11 +111,32 @@ std::string first_line(const std::string& command) {
   while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe))
     output.append(buffer.data(), got);
   const int status = ::pclose(pipe);
-  const std::string line = output.substr(0, output.find('\n'));
-  if (status == -1 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw Error("sbatch failed: " + (line.empty() ? "no word why" : line) +
-                "; expected Slurm's client tools and a running cluster");
-  return line;
+  Ran ran{status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 0, {}};
+  std::istringstream lines(output);
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty()) ran.lines.push_back(line);
+  return ran;
+}
+
+// A job as `sbatch --parsable` prints it: its number and, on a cluster that was asked for by name,
+// ";" and that name.
+struct Job {
+  std::string number;
+  std::string cluster;
+};
+
+// Plugins of a cluster print notes around the line of the job. Throws Error where there is none.
+Job submitted_job(const std::string& arguments) {
+  const Ran ran = run_in_shell("sbatch --parsable " + arguments);
+  const std::string last = ran.lines.empty() ? "no word why" : ran.lines.back();
+  if (!ran.is_done)
+    throw Error("sbatch failed: " + last + "; expected Slurm's client tools and a running cluster");
+  for (const std::string& line : ran.lines) {
+    const std::size_t end = std::min(line.find_first_not_of("0123456789"), line.size());
+    if (end == line.size()) return {line, {}};
+    if (end > 0 && line[end] == ';') return {line.substr(0, end), line.substr(end + 1)};
+  }
+  throw Error("sbatch states no job: " + last + "; expected its number");
 }
 
 }  // namespace
@@ -142,13 +167,18 @@ Submitted submit(const catalogue::Catalogue& catalogue,
   write_file(submitted.work_script, work);
   write_file(submitted.verify_script, verify);
   if (options.dry_run) return submitted;
-  submitted.work_job =
-      first_line("sbatch --parsable " + shell_word(submitted.work_script.string()));
-  submitted.work_job = submitted.work_job.substr(0, submitted.work_job.find(';'));
-  submitted.verify_job =
-      first_line("sbatch --parsable --dependency=afterany:" + submitted.work_job + " " +
-                 shell_word(submitted.verify_script.string()));
-  submitted.verify_job = submitted.verify_job.substr(0, submitted.verify_job.find(';'));
+  const Job array_job = submitted_job(shell_word(submitted.work_script.string()));
+  submitted.work_job = array_job.number;
+  try {
+    submitted.verify_job = submitted_job("--dependency=afterany:" + array_job.number + " " +
+                                         shell_word(submitted.verify_script.string()))
+                               .number;
+  } catch (const Error& error) {
+    const std::string where =
+        array_job.cluster.empty() ? "" : "--clusters=" + shell_word(array_job.cluster) + " ";
+    if (run_in_shell("scancel " + where + array_job.number).is_done) throw;
+    throw Error(error.message() + "; the array is left: scancel " + where + array_job.number);
+  }
   return submitted;
 }
 
