@@ -190,7 +190,9 @@ class Work {
     scene.background.video = files_[i].video;
     scene.background.mask = files_[i].mask;
     scene.background.first_frame = catalogue_.backgrounds[i].first_frame;
-    if (needed_[i].value_or(0) > 0) scene.background.frame_count = *needed_[i];
+    auto& frames = scene.background.frame_count;
+    frames = catalogue_.backgrounds[i].frame_count;
+    if (needed_[i].value_or(0) > 0) frames = std::min(*needed_[i], frames.value_or(*needed_[i]));
     pipeline::Options how = run_options();
     const std::string& name = catalogue_.backgrounds[i].name;
     std::string stage = "measuring the motion of " + name;

@@ -316,6 +316,28 @@ TEST_F(Build, ALogMayBeginAfterItsVideoAndBeforeTheFirstFrame) {
   EXPECT_EQ(build_set(catalogue, root_ / "set", {}).made, 2);
 }
 
+// That the background states the frames is as if the product did.
+TEST_F(Build, MotionIsMeasuredOfTheFramesThatABackgroundUses) {
+  write_small_clip(root_ / "sky.mkv", 24);
+  const auto bytes_of_motion = [&](const std::string& of_background,
+                                   const std::string& of_product) {
+    const fs::path set = root_ / (of_background.empty() ? "product" : "background");
+    const std::string text =
+        "[[background]]\nname = \"sky\"\nvideo = \"sky.mkv\"\n" + of_background +
+        "lens = { vertical_fov_deg = 60 }\ncamera = { position_ned_m = [0, 0, -150] }\n"
+        "[[aircraft]]\nname = \"c172\"\naircraft = \"c172/news\"\n[[trajectory]]\n"
+        "name = \"across\"\nwaypoints_ned_m = [[150, -20, -160], [150, 60, -160]]\n"
+        "speed_mps = 60\n[[product]]\n" +
+        of_product;
+    EXPECT_EQ(build_set(catalogue::parse_catalogue(text, root_ / "c.toml"), set, {}).made, 1);
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : fs::directory_iterator(set / ".cache" / "motion"))
+      bytes += entry.file_size();
+    return bytes;
+  };
+  EXPECT_EQ(bytes_of_motion("frame_count = 3\n", ""), bytes_of_motion("", "frame_count = 3\n"));
+}
+
 // What the clip of a background does not tell is said for the first sequence over it alone.
 TEST_F(Build, AWarningIsSaidOnceForABackground) {
   std::string text = test_support::kCatalogue;
