@@ -295,6 +295,18 @@ TEST(Notes, AreTheCommentsAboveAndBehindAKeyOrAHeader) {
   EXPECT_EQ(notes_of(tree_of(text, "s.toml").root, text), wanted);
 }
 
+// In a line of 130 kB: a walk from its start to each value would be one of billions of steps.
+TEST(Tree, ValuesOfALongLineStandAtTheirBytes) {
+  std::string text = "\xEF\xBB\xBFname = \"\u00fc\"\nall = [\"\u00fc\"";
+  for (int k = 1; k < 20'000; ++k) text += ", " + std::to_string(k);
+  const Tree tree = tree_of(text + "]\n", "s.toml");
+  EXPECT_EQ(text.substr(tree.root.member("name")->begin, 4), "\"\u00fc\"");
+  const std::vector<Node>& all = tree.root.member("all")->elements;
+  ASSERT_EQ(all.size(), 20'000u);
+  for (std::size_t k = 1; k < all.size(); ++k)
+    ASSERT_EQ(text.substr(all[k].begin, all[k].end - all[k].begin), std::to_string(k));
+}
+
 TEST_F(OfAFile, ABegunSceneIsWrittenAtTheFirstSave) {
   const fs::path later = folder_.path() / "new.toml";
   Document document(later, kText, {});

@@ -19,24 +19,23 @@ namespace {
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text) {
-    starts_.push_back(text.size() - without_mark(text).size());
-    for (std::size_t i = 0; i < text.size(); ++i)
-      if (text[i] == '\n') starts_.push_back(i + 1);
+    starts_.push_back(text.size() == without_mark(text).size() ? 0 : 1);
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if ((static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U) points_.push_back(i);
+      if (text[i] == '\n') starts_.push_back(points_.size());
+    }
   }
 
   std::size_t offset(const toml::source_position& place) const {
     if (place.line == 0 || place.line > starts_.size()) return text_.size();
-    std::size_t at = starts_[place.line - 1];
-    for (toml::source_index left = place.column - 1; left > 0 && at < text_.size(); --left) {
-      ++at;
-      while (at < text_.size() && (static_cast<unsigned char>(text_[at]) & 0xC0U) == 0x80U) ++at;
-    }
-    return at;
+    const std::size_t point = starts_[place.line - 1] + place.column - 1;
+    return point < points_.size() ? points_[point] : text_.size();
   }
 
  private:
   std::string_view text_;
-  std::vector<std::size_t> starts_;
+  std::vector<std::size_t> points_;  // the byte of each code point
+  std::vector<std::size_t> starts_;  // the first code point of each line
 };
 
 class Reader {
