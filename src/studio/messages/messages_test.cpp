@@ -67,7 +67,7 @@ TEST(RequestText, WhatIsNoMessageIsSaid) {
 }
 
 TEST(RequestText, LongAndDeepTextsAreRefusedBeforeTheyAreRead) {
-  EXPECT_THAT(fault_of(std::string(70'000, ' ')), HasSubstr("64 KiB"));
+  EXPECT_THAT(fault_of(std::string(kMostRequestBytes + 1, ' ')), HasSubstr("16 MiB"));
   const std::string deep = R"({"id":1,"do":"edit","changes":)" + std::string(60'000, '[');
   EXPECT_THAT(fault_of(deep), HasSubstr("nested too deep"));
   EXPECT_FALSE(id_of(deep));

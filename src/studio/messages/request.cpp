@@ -26,7 +26,7 @@ constexpr std::size_t kMostWord = 200;
 
 Json parsed(std::string_view text) {
   if (text.size() > kMostRequestBytes)
-    throw Error(fmt::format("the message has {} bytes; expected at most 64 KiB", text.size()));
+    throw Error(fmt::format("the message has {} bytes; expected at most 16 MiB", text.size()));
   if (is_nested_too_deep(text)) throw Error("the message is nested too deep");
   Json json = parse_json(text);
   if (!json.is_object())

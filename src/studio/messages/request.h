@@ -77,7 +77,8 @@ struct Request {
   std::string search;
 };
 
-inline constexpr std::size_t kMostRequestBytes = std::size_t{64} << 10;
+// An edit may hold a table as large as a scene file, 16 MiB (scene/scene/tables.h).
+inline constexpr std::size_t kMostRequestBytes = std::size_t{16} << 20;
 
 // The id of a message that has one, also where the rest of it is wrong; else empty.
 std::optional<std::int64_t> id_of(std::string_view text);

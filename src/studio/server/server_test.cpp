@@ -20,6 +20,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "studio/messages/request.h"
 #include "support/flight_file.h"
 #include "support/temporary_folder.h"
 
@@ -331,10 +332,13 @@ TEST_F(OfAServer, MessagesOfAnyKindAreAnsweredOrEndTheirOwnPageAlone) {
               HasSubstr("{\"id\":3,\"error\":"));
   EXPECT_THAT(say(good, std::string(60'000, '[')).value_or("-"), HasSubstr("nested too deep"));
   EXPECT_THAT(say(good, R"({"id":4,"do":"undo"})").value_or("-"), HasSubstr("nothing to undo"));
+  // As an edit with a path of thousands of waypoints is.
+  EXPECT_THAT(say(good, R"({"id":7,"do":"undo"})" + std::string(150'000, ' ')).value_or("-"),
+              HasSubstr("{\"id\":7,"));
   // Not UTF-8, too long, no mask, an unknown kind, a length beyond all bounds, a part of a message.
   const std::vector<std::string> hostile = {
       message("\xFF\xFE\xFD"),
-      message(std::string(70'000, 'a')),
+      message(std::string(messages::kMostRequestBytes + 1, 'a')),
       std::string("\x81\x02hi", 4),
       message("x", 0x8F),
       message("x", 0xF1),
