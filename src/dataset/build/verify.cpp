@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <utility>
@@ -72,24 +71,6 @@ bool is_below(const fs::path& folder, const fs::path& name) {
   return !relative.empty() && *relative.begin() != "..";
 }
 
-// The files that sequences were made of, as they are now. Each is read once, by one of the threads
-// that ask.
-class InputsNow {
- public:
-  bool has(const fs::path& input, const fs::path& sequence) {
-    const std::lock_guard lock(mutex_);
-    return replay::find_input(input, sequence, inputs_).has_value();
-  }
-  scene::Scene scene_as_made(const replay::Finished& finished) {
-    const std::lock_guard lock(mutex_);
-    return replay::scene_as_made(finished, inputs_);
-  }
-
- private:
-  std::mutex mutex_;
-  setup::SharedInputs inputs_;
-};
-
 // A sequence and where it lies.
 struct Place {
   std::string name;
@@ -99,11 +80,11 @@ struct Place {
 // Verifies one sequence of a data set.
 class Check {
  public:
-  Check(Place place, const VerifyOptions& options, InputsNow& inputs_now)
+  Check(Place place, const VerifyOptions& options, setup::SharedInputs& inputs)
       : name_(std::move(place.name)),
         folder_(std::move(place.folder)),
         options_(options),
-        inputs_now_(inputs_now) {}
+        inputs_(inputs) {}
 
   VerifyResult run() {
     ++result_.sequences;
@@ -125,7 +106,7 @@ class Check {
       replay::Finished finished = replay::open_finished(folder_);
       truth(finished);
       if (options_.deep_every == 0 || !has_its_inputs()) return;
-      finished.scene = inputs_now_.scene_as_made(finished);
+      finished.scene = replay::scene_as_made(finished, inputs_);
       deep(finished);
     } catch (const Error& error) {
       fault(error.what());
@@ -235,7 +216,7 @@ class Check {
   bool has_its_inputs() {
     bool has = true;
     for (const auto& [name, input] : result_.inputs) {
-      if (inputs_now_.has(name, folder_)) continue;
+      if (replay::find_input(name, folder_, inputs_)) continue;
       has = false;
       fault("was made of another " + name +
             " than is there now (its SHA-256 differs); it is not drawn anew");
@@ -332,7 +313,7 @@ class Check {
   std::string name_;
   fs::path folder_;
   const VerifyOptions& options_;
-  InputsNow& inputs_now_;
+  setup::SharedInputs& inputs_;
   VerifyResult result_;
   std::vector<double> contrast_ratios_;  // stated to measured
 };
@@ -446,14 +427,14 @@ std::vector<VerifyResult> results_of(const Places& places,
                                      std::int64_t first,
                                      std::int64_t count,
                                      const VerifyOptions& options,
-                                     InputsNow& inputs_now) {
+                                     setup::SharedInputs& inputs) {
   std::vector<VerifyResult> results(static_cast<std::size_t>(count));
   in_parallel(
       results.size(),
       options.jobs,
       [&](std::size_t i) {
         Place place = places.at(first + static_cast<std::int64_t>(i));
-        results[i] = Check(std::move(place), options, inputs_now).run();
+        results[i] = Check(std::move(place), options, inputs).run();
       },
       [&](std::int64_t done, std::int64_t) {
         if (options.progress) options.progress(first + done, places.size);
@@ -470,10 +451,10 @@ VerifyResult verify(const fs::path& root, const VerifyOptions& options) {
   const bool is_built = fs::exists(folder.catalogue()) || fs::exists(folder.record());
   const Places places = is_built ? places_of(folder) : places_there(root);
   VerifyResult result;
-  InputsNow inputs_now;
+  setup::SharedInputs inputs;
   for (std::int64_t first = 0; first < places.size; first += kMaxHeldResults) {
     const std::int64_t count = std::min(kMaxHeldResults, places.size - first);
-    for (const VerifyResult& one : results_of(places, first, count, options, inputs_now))
+    for (const VerifyResult& one : results_of(places, first, count, options, inputs))
       add(one, result);
   }
   if (result.not_there > kMaxMissingFaults)
