@@ -87,7 +87,7 @@ std::vector<EncounterRule> encounter_rules(const scene::TableReader& root,
                                            const Catalogue& catalogue);
 
 // The type that intruder k of sequence `index` is of where its class flies the track: each as often
-// as the others within one in the whole rule.
+// as the others within one in the whole rule, negative sequences included.
 const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, std::uint64_t k);
 
 // Gives the scene, whose camera is the own aircraft, the intruders of sequence `index` and, where
