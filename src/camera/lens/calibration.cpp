@@ -153,21 +153,45 @@ YAML::Node only_camera(const YAML::Node& top, const std::string& file) {
   return camera;
 }
 
+// Where the line of three dashes is that begins a second document; npos: nowhere. yaml-cpp's own
+// LoadAll() takes what follows a whole document, such as a comma, for documents without end.
+std::size_t second_document(std::string_view text) {
+  bool is_begun = false;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = trimmed(text.substr(begin, end - begin));
+    if (text.substr(begin).starts_with("---")) {
+      if (is_begun) return begin;
+      is_begun = line.size() > 3;
+    } else if (!line.empty() && line.front() != '#' && line.front() != '%') {
+      is_begun = true;
+    }
+    begin = end + 1;
+  }
+  return std::string_view::npos;
+}
+
+YAML::Node document_of(std::string_view text, int lines_before, const std::string& file) {
+  try {
+    return YAML::Load(std::string(text));
+  } catch (const YAML::Exception& error) {
+    throw Error("is not YAML: " + error.msg, {file, lines_before + error.mark.line + 1});
+  }
+}
+
 Values values_of_yaml(std::string_view text, const std::string& file) {
   if (text.size() > kLargestYaml_bytes)
     throw Error("is larger than 1 MiB; expected an OpenCV calibration", {file});
-  std::vector<YAML::Node> documents;
-  try {
-    documents = YAML::LoadAll(std::string(text));
-  } catch (const YAML::Exception& error) {
-    throw Error("is not YAML: " + error.msg, {file, error.mark.line + 1});
-  }
+  text = without_mark(text);
   Values values;
-  // A second document is a key that nothing reads, by the mark before it.
-  if (documents.size() > 1 && documents[1].IsMap())
-    values.emplace("---", Value{"", documents[1].Mark().line});
-  if (documents.empty() || !documents[0].IsMap()) return values;
-  YAML::Node top = documents[0];
+  const std::size_t end = std::min(second_document(text), text.size());
+  const YAML::Node document = document_of(text.substr(0, end), 0, file);
+  // A second document is a key that nothing reads.
+  if (const auto before = static_cast<int>(std::ranges::count(text.substr(0, end), '\n'));
+      document_of(text.substr(end), before, file).IsMap())
+    values.emplace("---", Value{"", before + 1});
+  if (!document.IsMap()) return values;
+  YAML::Node top = document;
   if (const YAML::Node camera = only_camera(top, file); camera.IsMap()) top.reset(camera);
   for (const auto& entry : top) {
     const YAML::Node& name = entry.first;

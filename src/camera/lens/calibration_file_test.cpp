@@ -243,6 +243,11 @@ TEST(OpenCv, AFileThatSaysTwoThingsIsRefused) {
   EXPECT_THAT(warnings, testing::ElementsAre("a.yml:2: '---' is not read"));
 }
 
+// yaml-cpp reads what follows the brace as documents without end.
+TEST(OpenCv, ACommaAfterAWholeDocumentEnds) {
+  EXPECT_EQ(error_of("{\"a\": 1},", "a.yml"), error_of("{\"a\": 1}", "a.yml"));
+}
+
 TEST(OpenCv, ReadsItsJson) {
   cv::FileStorage storage(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
   const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 900.25, 0, 639.5, 0, 905, 479.5, 0, 0, 1);
