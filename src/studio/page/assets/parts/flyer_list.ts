@@ -15,7 +15,7 @@ const GUESSED: [string, string][] = [
 export class FlyerList extends Part {
   protected readonly watches: Member[] = ['state', 'plan', 'selected', 'clip'];
   private add = button(
-      'Add aircraft, birds, drones …', () => this.studio.store.put({dialog: 'gallery', addsAt: null, replaces: null}),
+      'Add aircraft, birds, drones …', () => this.studio.store.put({dialog: 'gallery'}),
       {class: 'main', title: 'Add (N)'});
   private list = h('ul', {class: 'flyers'});
   private empty = h('p', {class: 'hint'}, 'Nothing flies yet. Add an aircraft, or double-click the picture.');

@@ -124,7 +124,7 @@ export class FlyerPanel extends Part {
     this.replaceChildren(
         h('div', {class: 'what'}, this.portrait, h('span', {class: 'title'}),
           flyer.kind === 'aircraft' &&
-              button('Change …', () => this.studio.store.put({dialog: 'gallery', replaces: path, addsAt: null}))),
+              button('Change …', () => this.studio.store.put({dialog: 'gallery', replaces: path}))),
         ...(keys.length ? [h('div', {class: 'grid'}, ...keys.map((one) => this.keyField(one)))] : []),
         h('h3', {}, STATED[flyer.statement].replace(/^./, (first) => first.toUpperCase())), ...this.statement(flyer),
         ...(flyer.kind === 'aircraft' ? [this.nearMiss.element] : []),

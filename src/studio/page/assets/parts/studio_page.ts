@@ -101,7 +101,7 @@ export class StudioPage extends Part {
       '[': () => studio.goToMoment(-1),
       ']': () => studio.goToMoment(1),
       m: () => studio.addMoment(),
-      n: () => now.clip && put({dialog: 'gallery', addsAt: null, replaces: null}),
+      n: () => now.clip && put({dialog: 'gallery'}),
       r: () => put({dialog: 'render'}),
       f: () => this.picture.fit(),
       a: () => this.picture.pan(-1, 0),
