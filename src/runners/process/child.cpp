@@ -19,8 +19,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "foundation/base/error.h"
-
 extern char** environ;
 
 namespace airtruth::process {

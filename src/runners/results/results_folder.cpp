@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <map>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
-#include "foundation/base/files.h"
 #include "foundation/base/names.h"
 #include "foundation/json/settings_record.h"
 #include "foundation/run_files/run_files.h"

@@ -2,8 +2,6 @@
 #include "runners/results/trajectories.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -12,8 +10,6 @@
 
 #include "evaluation/matching/boxes.h"
 #include "foundation/base/error.h"
-#include "foundation/base/files.h"
-#include "foundation/base/names.h"
 #include "labels/exchange/text.h"
 #include "runners/results/detections.h"
 #include "runners/results/results_folder.h"

@@ -6,9 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <optional>
-#include <string>
-#include <utility>
 
 #include <fmt/format.h>
 

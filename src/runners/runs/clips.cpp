@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "camera/lens/lens.h"
 #include "foundation/base/error.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/truth.h"

@@ -18,7 +18,6 @@
 #include "dataset/sequences/layout.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
-#include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/names.h"
 #include "foundation/base/stopwatch.h"

@@ -6,7 +6,6 @@
 #include <mutex>
 #include <optional>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,7 +19,6 @@
 #include "evaluation/matching/boxes.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
-#include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/names.h"
 #include "foundation/base/stopwatch.h"
@@ -30,7 +28,6 @@
 #include "picture/video/numbered_frames.h"
 #include "picture/video/numbered_images.h"
 #include "runners/results/results_folder.h"
-#include "runners/tracking/tracker.h"
 #include "sequence/setup/motion_source.h"
 #include "sequence/setup/shared_inputs.h"
 
