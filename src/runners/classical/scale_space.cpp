@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runners/classical/scale_space.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <opencv2/core/hal/intrin.hpp>
@@ -24,17 +23,15 @@ cv::Mat smoothed(const cv::Mat& picture) {
   return result;
 }
 
+// Samples beyond each side that the longest element reaches.
+constexpr int kMargin = kLongElement - 1;
+
 enum class Along { kRows, kColumns };
 enum class Extreme { kLeast, kMost };
 Extreme opposite(Extreme of) { return of == Extreme::kMost ? Extreme::kLeast : Extreme::kMost; }
 
 cv::Mat extreme_of(const cv::Mat& a, const cv::Mat& b, Extreme extreme) {
-  cv::Mat result;
-  if (extreme == Extreme::kMost)
-    cv::max(a, b, result);
-  else
-    cv::min(a, b, result);
-  return result;
+  return extreme == Extreme::kMost ? cv::max(a, b) : cv::min(a, b);
 }
 
 // The extreme of every `length` neighbours, by doubling: of 1, 2, 4, ... and, of two that overlap,
@@ -54,10 +51,8 @@ cv::Mat extreme_of(cv::Mat samples, Along along, int length, Extreme extreme) {
 }
 
 // Closing (first the most, then the least) or opening by a line along rows or columns. `padded` has
-// kLongElement - 1 more samples on every side than the result.
+// kMargin more samples on every side than the result.
 cv::Mat filtered(const cv::Mat& padded, Along along, int length, Extreme first) {
-  // Samples beyond each side that the longest element reaches.
-  constexpr int kMargin = kLongElement - 1;
   const int unused = kMargin - (length - 1);
   const cv::Size size(padded.cols - 2 * kMargin, padded.rows - 2 * kMargin);
   const cv::Mat used = along == Along::kRows
@@ -79,8 +74,6 @@ cv::Mat without_objects(const cv::Mat& padded, Extreme first, bool with_long) {
 }
 
 cv::Mat close_minus_open(const cv::Mat& picture, bool with_long, cv::Mat& is_dark) {
-  // Samples beyond each side that the longest element reaches.
-  constexpr int kMargin = kLongElement - 1;
   cv::Mat padded, dark, bright;
   cv::copyMakeBorder(picture, padded, kMargin, kMargin, kMargin, kMargin, cv::BORDER_REPLICATE);
   cv::subtract(without_objects(padded, Extreme::kMost, with_long), picture, dark);
