@@ -36,18 +36,35 @@ struct JsonPart {
   int line = 1;
 };
 
-// A place in a text, with its line.
+// A place in the text of a file, with its line. The file's name and the text must outlive it.
 struct Cursor {
   std::string_view text;
-  std::size_t at = 0;
+  const fs::path& file;
   int line = 1;
+  std::size_t at = 0;
 
+  [[noreturn]] void fail(const std::string& fault) const {
+    throw Error(fault, {file.string(), line});
+  }
   bool is_at_end() const { return at >= text.size(); }
   char here() const { return is_at_end() ? '\0' : text[at]; }
   void step() { line += text[at++] == '\n' ? 1 : 0; }
   void skip_blanks() {
     while (!is_at_end() && std::string_view(" \t\r\n").find(here()) != std::string_view::npos)
       step();
+  }
+  // Passes a bracket or a colon, with the blanks around it.
+  void take(char wanted, const std::string& fault) {
+    skip_blanks();
+    if (here() != wanted) fail(fault);
+    step();
+    skip_blanks();
+  }
+  // Passes the bracket here, behind which nothing but blanks may be.
+  void take_last(const std::string& fault) {
+    step();
+    skip_blanks();
+    if (!is_at_end()) fail(fault);
   }
   // From the quote on to after the one that closes; false where none does.
   bool skip_string() {
@@ -93,13 +110,10 @@ struct Cursor {
 // The elements of a list.
 class JsonElements {
  public:
-  // `whole` begins with '['. `what` is what it holds, for messages: "detections". The file's name
-  // and the text must outlive the object.
+  // `what` is what it holds, for messages: "detections".
   JsonElements(const JsonPart& whole, const fs::path& file, std::string what)
-      : cursor_{whole.text, 0, whole.line}, file_(file), what_(std::move(what)) {
-    cursor_.skip_blanks();
-    if (cursor_.here() != '[') fail("is no list of " + what_);
-    cursor_.step();
+      : cursor_{whole.text, file, whole.line}, what_(std::move(what)) {
+    cursor_.take('[', "is no list of " + what_);
   }
   // Empty after the last one. Throws Error for a list that does not end, or goes on after its end.
   std::optional<JsonPart> next() {
@@ -108,26 +122,19 @@ class JsonElements {
       cursor_.step();
       cursor_.skip_blanks();
     } else if (cursor_.here() == ']') {
-      cursor_.step();
-      cursor_.skip_blanks();
-      if (!cursor_.is_at_end()) fail("goes on after the list of " + what_);
+      cursor_.take_last("goes on after the list of " + what_);
       return std::nullopt;
     } else if (!is_first_) {
-      fail("the list of " + what_ + " does not end; expected ',' or ']'");
+      cursor_.fail("the list of " + what_ + " does not end; expected ',' or ']'");
     }
     is_first_ = false;
     const auto part = cursor_.value();
-    if (!part) fail("ends within the list of " + what_ + ": the file is not whole");
+    if (!part) cursor_.fail("ends within the list of " + what_ + ": the file is not whole");
     return part;
   }
 
  private:
-  [[noreturn]] void fail(const std::string& fault) const {
-    throw Error(fault, {file_.string(), cursor_.line});
-  }
-
   Cursor cursor_;
-  const fs::path& file_;
   std::string what_;
   bool is_first_ = true;
 };
@@ -138,10 +145,8 @@ std::vector<std::optional<JsonPart>> json_members(std::string_view text,
                                                   const fs::path& file,
                                                   const std::vector<std::string>& keys) {
   std::vector<std::optional<JsonPart>> members(keys.size());
-  Cursor cursor{text};
-  cursor.skip_blanks();
-  if (cursor.here() != '{') throw Error("is no JSON object", {file.string(), cursor.line});
-  cursor.step();
+  Cursor cursor{text, file};
+  cursor.take('{', "is no JSON object");
   for (bool is_first = true;; is_first = false) {
     cursor.skip_blanks();
     if (cursor.here() == '}') break;
@@ -149,17 +154,12 @@ std::vector<std::optional<JsonPart>> json_members(std::string_view text,
       cursor.step();
       cursor.skip_blanks();
     }
-    if (cursor.here() != '"')
-      throw Error("has no key here; expected a key, ',' or '}'", {file.string(), cursor.line});
+    if (cursor.here() != '"') cursor.fail("has no key here; expected a key, ',' or '}'");
     const std::size_t begin = cursor.at + 1;
     const int line = cursor.line;
     if (!cursor.skip_string()) not_whole(file, line);
     const std::string_view key = text.substr(begin, cursor.at - 1 - begin);
-    cursor.skip_blanks();
-    if (cursor.here() != ':')
-      throw Error("has no value of a key; expected ':'", {file.string(), cursor.line});
-    cursor.step();
-    cursor.skip_blanks();
+    cursor.take(':', "has no value of a key; expected ':'");
     const auto value = cursor.value();
     if (!value) not_whole(file, line);
     const auto found = std::find(keys.begin(), keys.end(), key);
@@ -168,16 +168,20 @@ std::vector<std::optional<JsonPart>> json_members(std::string_view text,
     if (member) throw Error("has '" + *found + "' twice", {file.string(), line});
     member = value;
   }
-  cursor.step();
-  cursor.skip_blanks();
-  if (!cursor.is_at_end()) throw Error("goes on after the object", {file.string(), cursor.line});
+  cursor.take_last("goes on after the object");
   return members;
 }
 
-// What a whole COCO file says about the numbers in its annotations.
-struct Names {
-  std::map<std::int64_t, std::string> image_files;
-  std::map<std::int64_t, std::string> categories;
+using NamesById = std::map<std::int64_t, std::string>;
+
+// The list of detections in a file, and what a whole COCO file says about the numbers in it.
+struct Found {
+  JsonPart list;
+  bool is_whole = false;
+  NamesById image_files = {};
+  NamesById categories = {};
+
+  const char* what() const { return is_whole ? "annotations" : "detections"; }
 };
 
 struct SetImage {
@@ -356,11 +360,11 @@ JsonDocument parsed(const JsonPart& part, const fs::path& file) {
 }
 
 // The texts of a key by the ids of the objects in a list.
-std::map<std::int64_t, std::string> texts_by_id(const std::optional<JsonPart>& list,
-                                                const fs::path& file,
-                                                const std::string& what,
-                                                const std::string& key) {
-  std::map<std::int64_t, std::string> texts;
+NamesById texts_by_id(const std::optional<JsonPart>& list,
+                      const fs::path& file,
+                      const std::string& what,
+                      const std::string& key) {
+  NamesById texts;
   if (!list) return texts;
   JsonElements elements(*list, file, what);
   while (const auto element = elements.next()) {
@@ -384,7 +388,7 @@ struct Keys {
 struct Readings {
   Ids ids = Ids::kStated;
   Texts texts = Texts::kNames;
-  std::map<std::int64_t, std::string> categories;  // where a sequence states no such id
+  NamesById categories;  // where a sequence states no such id
 };
 
 // The name of an image in a result; empty where it has a number.
@@ -397,30 +401,26 @@ std::optional<std::string> name_in(const JsonObject& object) {
 }
 
 SetImage image_of(const JsonObject& object,
-                  const std::optional<Names>& names,
+                  const Found& found,
                   const SetImages& images,
                   const Readings& readings,
                   const Where& where) {
   if (const auto name = name_in(object)) return images.by_name(*name, readings.texts, where);
   if (!object.has("image_id")) throw Error(std::string("has no image_id; ") + kExpected, where);
   const std::int64_t id = object.whole("image_id");
-  if (!names || names->image_files.empty()) return images.by_id(id, readings.ids, where);
-  const auto named = names->image_files.find(id);
-  if (named == names->image_files.end())
+  if (found.image_files.empty()) return images.by_id(id, readings.ids, where);
+  const auto named = found.image_files.find(id);
+  if (named == found.image_files.end())
     throw Error(fmt::format("image_id is {}, which the file's images do not have", id), where);
   return images.by_name(named->second, readings.texts, where);
 }
 
 // Looks through a list of detections. A whole COCO file names all its images, with or without
 // detections.
-Keys keys_in(const JsonPart& list,
-             const std::optional<Names>& names,
-             const fs::path& file,
-             const char* what) {
+Keys keys_in(const Found& found, const fs::path& file) {
   Keys keys;
-  if (names)
-    for (const auto& [id, name] : names->image_files) keys.texts.insert(name);
-  JsonElements elements(list, file, what);
+  for (const auto& [id, name] : found.image_files) keys.texts.insert(name);
+  JsonElements elements(found.list, file, found.what());
   while (const auto element = elements.next()) {
     const JsonDocument object = parsed(*element, file);
     const auto is_number = [&](const char* key) {
@@ -428,10 +428,9 @@ Keys keys_in(const JsonPart& list,
     };
     if (auto name = name_in(object))
       keys.texts.insert(*std::move(name));
-    else if (is_number("image_id") && (!names || names->image_files.empty()))
+    else if (is_number("image_id") && found.image_files.empty())
       keys.ids.insert(object.whole("image_id"));
-    if (is_number("category_id") && !object.has("category_name") &&
-        (!names || names->categories.empty()))
+    if (is_number("category_id") && !object.has("category_name") && found.categories.empty())
       keys.categories.insert(object.whole("category_id"));
   }
   return keys;
@@ -476,10 +475,8 @@ Reading reading_of(const std::set<Key>& keys,
   return fitting.front();
 }
 
-using Categories = std::map<std::int64_t, std::string>;
-
-Categories counted_from_1(const std::set<std::string>& names) {
-  Categories categories;
+NamesById counted_from_1(const std::set<std::string>& names) {
+  NamesById categories;
   for (const std::string& name : names) categories.emplace(std::ssize(categories) + 1, name);
   return categories;
 }
@@ -488,11 +485,11 @@ Categories counted_from_1(const std::set<std::string>& names) {
 // export of it, with or without --one-class, in which they are all there and one is an aircraft's.
 // Throws Error where both exports fit and differ in what is an aircraft; warns where nothing fits.
 // Category 1 alone is every detector's aircraft, unless the set states it.
-Categories categories_of(const std::set<std::int64_t>& ids,
-                         std::span<const ExpectedSequence> set,
-                         const fs::path& file,
-                         const Warn& warn) {
-  Categories stated;
+NamesById categories_of(const std::set<std::int64_t>& ids,
+                        std::span<const ExpectedSequence> set,
+                        const fs::path& file,
+                        const Warn& warn) {
+  NamesById stated;
   std::set<std::string> all;
   std::set<std::string> distractors;
   for (const ExpectedSequence& sequence : set) {
@@ -503,14 +500,14 @@ Categories categories_of(const std::set<std::int64_t>& ids,
   if (ids.empty() || (stated.empty() && ids == std::set<std::int64_t>{1})) return {};
   std::set<std::string> of_one_class = distractors;
   of_one_class.insert(Detection{}.category);
-  const Categories whole = stated.empty() ? counted_from_1(all) : stated;
-  const Categories one_class = stated.empty() ? counted_from_1(of_one_class) : stated;
-  const auto is_aircraft = [&](const Categories& categories, std::int64_t id) {
+  const NamesById whole = stated.empty() ? counted_from_1(all) : stated;
+  const NamesById one_class = stated.empty() ? counted_from_1(of_one_class) : stated;
+  const auto is_aircraft = [&](const NamesById& categories, std::int64_t id) {
     if (!categories.contains(id) || distractors.contains(categories.at(id))) return false;
     const auto of_class = annotation::class_of_category(categories.at(id));
     return !of_class || annotation::is_aircraft(*of_class);
   };
-  const auto fits = [&](const Categories& categories) {
+  const auto fits = [&](const NamesById& categories) {
     return std::ranges::all_of(ids, [&](auto id) { return categories.contains(id); }) &&
            std::ranges::any_of(ids, [&](auto id) { return is_aircraft(categories, id); });
   };
@@ -544,16 +541,16 @@ Categories categories_of(const std::set<std::int64_t>& ids,
 
 // Category 1 is "aircraft" where nothing names it.
 std::string category_of(const JsonObject& object,
-                        const std::optional<Names>& names,
+                        const Found& found,
                         const ExpectedSequence& sequence,
                         const Readings& readings,
                         const Where& where) {
   if (const auto category = object.maybe_text("category_name")) return *category;
   if (!object.has("category_id")) return Detection{}.category;
   const std::int64_t id = object.whole("category_id");
-  if (names && !names->categories.empty()) {
-    const auto named = names->categories.find(id);
-    if (named == names->categories.end())
+  if (!found.categories.empty()) {
+    const auto named = found.categories.find(id);
+    if (named == found.categories.end())
       throw Error(fmt::format("category_id is {}, which the file's categories do not have", id),
                   where);
     return named->second;
@@ -566,38 +563,33 @@ std::string category_of(const JsonObject& object,
 }
 
 Detection detection_of(const JsonObject& object,
-                       const std::optional<Names>& names,
+                       const Found& found,
                        const ExpectedSequence& sequence,
                        const Readings& readings,
                        const Where& where) {
   Detection detection;
   const std::vector<double> box = object.numbers("bbox", 4);
   detection.box_px = {box[0], box[1], box[2], box[3]};
-  if (names && !object.has("score"))
+  if (found.is_whole && !object.has("score"))
     throw Error(std::string("is an annotation without a score; ") + kExpected, where);
   detection.score = object.number("score");
-  detection.category = category_of(object, names, sequence, readings, where);
+  detection.category = category_of(object, found, sequence, readings, where);
   if (const auto track = object.maybe_integer("track_id"); track && *track >= 0)
     detection.track = *track;
   return detection;
 }
 
-// The list of detections in a file, and what a whole COCO file says beside it.
-struct Found {
-  JsonPart list;
-  std::optional<Names> names;
-};
-
 Found found_in(std::string_view text, const fs::path& file) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first != std::string_view::npos && text[first] == '[') return {{text, 1}, {}};
+  if (first != std::string_view::npos && text[first] == '[') return {{text}};
   if (first == std::string_view::npos || text[first] != '{')
     throw Error(std::string("is no list of detections; ") + kExpected, {file.string()});
   const auto members = json_members(text, file, {"annotations", "images", "categories"});
   if (!members[0]) throw Error(std::string("has no annotations; ") + kExpected, {file.string()});
   return {*members[0],
-          Names{texts_by_id(members[1], file, "images", "file_name"),
-                texts_by_id(members[2], file, "categories", "name")}};
+          true,
+          texts_by_id(members[1], file, "images", "file_name"),
+          texts_by_id(members[2], file, "categories", "name")};
 }
 
 }  // namespace
@@ -611,17 +603,16 @@ std::vector<SequenceDetections> read_coco_results(const fs::path& file,
   for (const ExpectedSequence& sequence : set)
     lists.emplace_back(sequence.name, sequence.width, sequence.height, sequence.frames);
   const Found found = found_in(text, file);
-  const char* what = found.names ? "annotations" : "detections";
-  const Keys keys = keys_in(found.list, found.names, file, what);
+  const Keys keys = keys_in(found, file);
   const Readings readings = {reading_of(keys.ids, images.readings(), images, file, warn),
                              reading_of(keys.texts, images.text_readings(), images, file, warn),
                              categories_of(keys.categories, set, file, warn)};
-  JsonElements elements(found.list, file, what);
+  JsonElements elements(found.list, file, found.what());
   while (const auto element = elements.next()) {
     const Where where{file.string(), element->line};
     const JsonDocument object = parsed(*element, file);
-    const SetImage image = image_of(object, found.names, images, readings, where);
-    Detection detection = detection_of(object, found.names, set[image.sequence], readings, where);
+    const SetImage image = image_of(object, found, images, readings, where);
+    Detection detection = detection_of(object, found, set[image.sequence], readings, where);
     lists[image.sequence].add(image.frame, std::move(detection), where);
   }
   std::vector<SequenceDetections> all;
