@@ -147,12 +147,6 @@ std::vector<std::string> mot_names(const fs::path& folder) {
   return names;
 }
 
-// The one JSON file of a folder without text; empty: none, or several.
-fs::path only_json(const fs::path& folder) {
-  const std::vector<fs::path> files = files_with(folder, ".json");
-  return files.size() == 1 ? files.front() : fs::path();
-}
-
 void expect_known(const std::vector<std::string>& names,
                   std::span<const ExpectedSequence> set,
                   const fs::path& folder) {
@@ -206,13 +200,6 @@ std::vector<SequenceDetections> read_folder(const fs::path& folder,
     }
   }
   return all;
-}
-
-void expect_distinct(std::span<const ExpectedSequence> set) {
-  std::map<std::string, int> counts;
-  for (const ExpectedSequence& sequence : set)
-    if (++counts[sequence.name] > 1)
-      throw Error("the set has two sequences of the name '" + sequence.name + "'");
 }
 
 }  // namespace
@@ -287,14 +274,13 @@ SequenceDetections read_sequence(const fs::path& folder, const std::string& name
 std::vector<SequenceDetections> read_detections(const fs::path& source,
                                                 std::span<const ExpectedSequence> set,
                                                 const Warn& warn) {
-  expect_distinct(set);
   if (!fs::exists(source)) throw Error("does not exist", {source.string()});
   if (!fs::is_directory(source)) return read_coco_results(source, set, warn);
   const std::vector<std::string> names = mot_names(source);
   const bool is_own = fs::exists(source / "detector.json");
   if (is_own || !names.empty()) return read_folder(source, is_own, names, set);
-  if (const fs::path file = only_json(source); !file.empty())
-    return read_coco_results(file, set, warn);
+  if (const std::vector<fs::path> files = files_with(source, ".json"); files.size() == 1)
+    return read_coco_results(files.front(), set, warn);
   throw Error(
       "holds no results; expected what `airtruth detect` made, MOTChallenge text (SEQUENCE.txt) or "
       "one COCO results file",
