@@ -23,14 +23,6 @@ namespace {
 constexpr std::size_t kMostModelBytes = std::size_t{512} << 20;  // 130 million parameters
 constexpr int kTrialPx = 256;  // side of the first input where the network takes frames of any size
 
-NetworkJob job_of(const ModelDescription& description, std::string onnx) {
-  return {description.input.channels(),
-          description.input.mean,
-          description.input.scale,
-          output_names(description),
-          std::move(onnx)};
-}
-
 // A grey input of the size that the network will see.
 cv::Mat trial_of(const NetworkInput& input) {
   const int multiple = input.multiple_px;
@@ -67,11 +59,15 @@ class OnnxDetector : public detector::Detector {
  public:
   OnnxDetector(std::filesystem::path model,
                ModelDescription description,
-               NetworkJob job,
+               std::string onnx,
                const NetworkOptions& options)
       : model_(std::move(model)),
         description_(std::move(description)),
-        job_(std::move(job)),
+        job_{description_.input.channels(),
+             description_.input.mean,
+             description_.input.scale,
+             output_names(description_),
+             std::move(onnx)},
         options_(options) {
     try {
       start();
@@ -155,9 +151,7 @@ std::unique_ptr<detector::Detector> make_network_detector(const std::filesystem:
                             json.filename().string()),
                 {model.string()});
   }
-  ModelDescription description = read_description(json);
-  NetworkJob job = job_of(description, std::move(onnx));
-  return std::make_unique<OnnxDetector>(model, std::move(description), std::move(job), options);
+  return std::make_unique<OnnxDetector>(model, read_description(json), std::move(onnx), options);
 }
 
 }  // namespace airtruth::network

@@ -79,14 +79,8 @@ cv::Mat samples_of(const image::Picture& picture, NetworkInput::Layout layout) {
 
 std::vector<Piece> pieces_of(const image::Picture& picture, const NetworkInput& input) {
   const cv::Mat frame = samples_of(picture, input.layout);
-  switch (input.fit) {
-    case NetworkInput::Fit::kTiles:
-      return tiles(frame, input);
-    case NetworkInput::Fit::kLetterbox:
-      return letterbox(frame, input);
-    case NetworkInput::Fit::kFrame:
-      break;
-  }
+  if (input.fit == NetworkInput::Fit::kTiles) return tiles(frame, input);
+  if (input.fit == NetworkInput::Fit::kLetterbox) return letterbox(frame, input);
   return whole(frame, input);
 }
 

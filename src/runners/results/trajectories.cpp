@@ -29,11 +29,6 @@ constexpr const char* kBinary = ".bin";
 constexpr std::size_t kAnchorDigits = 8;  // of a file's name, as VOT's toolkit writes it
 constexpr std::size_t kMotColumns = 6;    // at least: frame, id, x, y, w, h
 
-std::optional<Box> box_from(const std::vector<double>& n, std::size_t first, int origin_px) {
-  const Box box{n[first] - origin_px, n[first + 1] - origin_px, n[first + 2], n[first + 3]};
-  return is_sound(box) ? std::optional(box) : std::nullopt;
-}
-
 // Takes down what the record beside a run says that it was made of.
 void add_source(const fs::path& run, TrackerResults& results) {
   const fs::path record = run_record(run);
@@ -121,9 +116,10 @@ Trajectory read_mot(const fs::path& file, const exchange::Clip& clip, TrackerRes
     if (!at)
       throw Error("is no line of MOTChallenge; expected frame,id,x,y,width,height,...",
                   {file.string(), line.number});
-    if (const auto box = box_from(n, 2, 1))
-      tracks[at->first - 1][at->second] = *box;
-    else if (n[4] < 0 || n[5] < 0)
+    const Box box{n[2] - 1, n[3] - 1, n[4], n[5]};
+    if (is_sound(box))
+      tracks[at->first - 1][at->second] = box;
+    else if (box.width < 0 || box.height < 0)
       add_negative({file.string(), line.number}, results);
   }
   const auto mine = overlapping_track(tracks, clip);
@@ -187,11 +183,6 @@ void expect_length(const Trajectory& trajectory, const exchange::Clip& clip, con
                             clip.name,
                             clip.frames.size()),
                 {file.string()});
-}
-
-void expect_begun(const Trajectory& trajectory, const fs::path& file) {
-  if (trajectory.empty() || trajectory.front().mark != Mark::kBegun)
-    throw Error("does not begin with 1; expected a run of VOT", {file.string(), 1});
 }
 
 Trajectory one_pass_run(const fs::path& file,
@@ -258,7 +249,8 @@ void add_vot_runs(const fs::path& folder,
     add_source(file, results);
     // No measure has the times of these runs; they are checked alone.
     read_times(times_file(file, Protocol::kRestart), run.size());
-    expect_begun(run, file);
+    if (run.empty() || run.front().mark != Mark::kBegun)
+      throw Error("does not begin with 1; expected a run of VOT", {file.string(), 1});
     if (is_anchor_name(file, clip.name)) {
       if (*number >= length)
         throw Error(fmt::format("begins at frame {}; {} has {} frames", *number, clip.name, length),

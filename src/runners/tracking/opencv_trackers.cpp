@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -17,6 +16,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "camera/opencv_plugin/opencv_plugin.h"
+#include "foundation/base/stopwatch.h"
 #include "foundation/image/colour.h"
 #include "foundation/image/mats.h"
 #include "runners/process/child.h"
@@ -203,11 +203,10 @@ class WithOwnRand : public Tracker {
   }
   Answer update() override {
     const Turn turn(numbers_.data());
-    const auto began = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     Answer answer = tracker_->update();
     // Waiting for the turn is not the tracker's time.
-    answer.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    answer.seconds = watch.seconds();
     return answer;
   }
 

@@ -69,29 +69,27 @@ class Images {
   }
 
   // Returns the text by which a message refers to the picture.
-  std::string hand_over(const image::Picture& picture);
+  std::string hand_over(const image::Picture& picture) {
+    const image::Rgb8 rgb = image::rgb8_from_picture(picture);
+    if (kind_ == ImageKind::kMemory)
+      return fmt::format("image:{};{};rgb;{}", rgb.width, rgb.height, base64_of(rgb.bytes()));
+    const auto path = [this](std::int64_t number) {
+      return folder_->path() / fmt::format("{:08d}.png", number);
+    };
+    const fs::path file = path(count_);
+    video::write_still(file, rgb, Flush::kLater);
+    std::error_code ignored;
+    if (count_ >= 2) fs::remove(path(count_ - 2), ignored);
+    ++count_;
+    if (kind_ == ImageKind::kPath) return "file://" + file.string();
+    return "data:image/png;" + base64_of(read_file(file));
+  }
 
  private:
   ImageKind kind_;
   std::optional<MemoryPlace> folder_;
   std::int64_t count_ = 0;
 };
-
-std::string Images::hand_over(const image::Picture& picture) {
-  const image::Rgb8 rgb = image::rgb8_from_picture(picture);
-  if (kind_ == ImageKind::kMemory)
-    return fmt::format("image:{};{};rgb;{}", rgb.width, rgb.height, base64_of(rgb.bytes()));
-  const auto path = [this](std::int64_t number) {
-    return folder_->path() / fmt::format("{:08d}.png", number);
-  };
-  const fs::path file = path(count_);
-  video::write_still(file, rgb, Flush::kLater);
-  std::error_code ignored;
-  if (count_ >= 2) fs::remove(path(count_ - 2), ignored);
-  ++count_;
-  if (kind_ == ImageKind::kPath) return "file://" + file.string();
-  return "data:image/png;" + base64_of(read_file(file));
-}
 
 }  // namespace
 
