@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -72,9 +71,9 @@ std::vector<results::Detection> Associator::step(const detector::FrameInput& fra
   match(detections, seen, true, true);
   match(detections, seen, true, false);
   match(detections, seen, false, true);
+  begin_tracks(detections, seen);
   declare(detections);
   end_tracks();
-  begin_tracks(detections, seen);
   return detections;
 }
 
@@ -170,6 +169,16 @@ void Associator::match(const std::vector<results::Detection>& detections,
   }
 }
 
+void Associator::begin_tracks(const std::vector<results::Detection>& detections,
+                              const std::vector<Seen>& seen) {
+  for (const Seen& one : seen)
+    if (one.confident && !one.taken)
+      tracks_.push_back({.filter = DirectionFilter(one.sighting),
+                         .category = detections[one.index].category,
+                         .seen_s = time_s_,
+                         .detection = one.index});
+}
+
 void Associator::declare(std::vector<results::Detection>& detections) {
   for (Track& track : tracks_) {
     if (!track.number && track.hits >= options_.declare_m) track.number = ++declared_;
@@ -183,20 +192,6 @@ void Associator::end_tracks() {
     return track.number ? time_s_ - track.seen_s > kMostMissed_s
                         : track.frames - track.hits > most_misses;
   });
-}
-
-void Associator::begin_tracks(std::vector<results::Detection>& detections,
-                              const std::vector<Seen>& seen) {
-  for (const Seen& one : seen) {
-    if (!one.confident || one.taken) continue;
-    Track track{
-        DirectionFilter(one.sighting), detections[one.index].category, 1, 1, time_s_, {}, {}};
-    if (options_.declare_m == 1) {
-      track.number = ++declared_;
-      detections[one.index].track = track.number;
-    }
-    tracks_.push_back(std::move(track));
-  }
 }
 
 }  // namespace airtruth::association

@@ -77,9 +77,10 @@ class Associator {
              std::vector<Seen>& seen,
              bool declared,
              bool confident);
+  void begin_tracks(const std::vector<results::Detection>& detections,
+                    const std::vector<Seen>& seen);
   void declare(std::vector<results::Detection>& detections);
   void end_tracks();
-  void begin_tracks(std::vector<results::Detection>& detections, const std::vector<Seen>& seen);
 
   AssociationOptions options_;
   std::optional<lens::Lens> lens_;
