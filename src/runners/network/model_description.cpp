@@ -116,24 +116,16 @@ NetworkInput input_of(const JsonObject& json) {
 }
 
 HeatMapOutput heat_map_of(const JsonObject& json) {
-  using Activation = HeatMapOutput::Activation;
-  using Scale = HeatMapOutput::SizeScale;
-  using Unit = HeatMapOutput::SizeUnit;
   json.expect_keys_among(
       {"kind", "heat", "offset", "size", "activation", "size_scale", "size_unit"});
   HeatMapOutput output;
   output.heat = json.text("heat");
   output.offset = json.text("offset");
   output.size = json.text("size");
-  output.activation =
-      word<Activation>(json,
-                       "activation",
-                       {{"none", Activation::kNone}, {"sigmoid", Activation::kSigmoid}},
-                       Activation::kNone);
-  output.size_scale = word<Scale>(
-      json, "size_scale", {{"linear", Scale::kLinear}, {"log", Scale::kLog}}, Scale::kLinear);
-  output.size_unit =
-      word<Unit>(json, "size_unit", {{"px", Unit::kPixel}, {"cell", Unit::kCell}}, Unit::kPixel);
+  output.needs_sigmoid =
+      word<bool>(json, "activation", {{"none", false}, {"sigmoid", true}}, false);
+  output.is_size_log = word<bool>(json, "size_scale", {{"linear", false}, {"log", true}}, false);
+  output.is_size_in_cells = word<bool>(json, "size_unit", {{"px", false}, {"cell", true}}, false);
   return output;
 }
 

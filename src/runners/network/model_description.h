@@ -39,15 +39,12 @@ struct NetworkInput {
 // Three outputs over cells: how likely an object's centre lies in the cell, where in the cell, and
 // the object's size (Zhou, Wang and Kraehenbuehl 2019, "Objects as Points").
 struct HeatMapOutput {
-  std::string heat;    // 1 x classes x h x w
-  std::string offset;  // 1 x 2 x h x w: x and y, in cells from the cell's corner
-  std::string size;    // 1 x 2 x h x w: width and height
-  enum class Activation { kNone, kSigmoid };
-  Activation activation = Activation::kNone;
-  enum class SizeScale { kLinear, kLog };
-  SizeScale size_scale = SizeScale::kLinear;
-  enum class SizeUnit { kPixel, kCell };
-  SizeUnit size_unit = SizeUnit::kPixel;
+  std::string heat;               // 1 x classes x h x w
+  std::string offset;             // 1 x 2 x h x w: x and y, in cells from the cell's corner
+  std::string size;               // 1 x 2 x h x w: width and height
+  bool needs_sigmoid = false;     // the heat; else it is a probability already
+  bool is_size_log = false;       // the natural logarithm of the size; else the size itself
+  bool is_size_in_cells = false;  // else in px
 };
 
 // One output of the YOLO family: of each box the centre's x and y, width and height in pixels of

@@ -56,9 +56,9 @@ TEST(ModelDescription, IsReadWhole) {
   EXPECT_EQ(description.input.height, 480);
   EXPECT_EQ(description.input.overlap_px, 64);
   const auto& output = std::get<HeatMapOutput>(description.output);
-  EXPECT_EQ(output.activation, HeatMapOutput::Activation::kSigmoid);
-  EXPECT_EQ(output.size_scale, HeatMapOutput::SizeScale::kLinear);
-  EXPECT_EQ(output.size_unit, HeatMapOutput::SizeUnit::kCell);
+  EXPECT_TRUE(output.needs_sigmoid);
+  EXPECT_FALSE(output.is_size_log);
+  EXPECT_TRUE(output.is_size_in_cells);
   EXPECT_EQ(output_names(description), (std::vector<std::string>{"hm", "reg", "wh"}));
   EXPECT_EQ(description.classes, (std::vector<std::string>{"aircraft", "bird"}));
   EXPECT_EQ(description.score_threshold, 0.2);

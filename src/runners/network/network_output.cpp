@@ -103,7 +103,7 @@ class HeatMap {
                       column,
                       names_.heat));
     }
-    return names_.activation == HeatMapOutput::Activation::kSigmoid ? sigmoid(heat) : heat;
+    return names_.needs_sigmoid ? sigmoid(heat) : heat;
   }
 
   // Of cells that are equally hot the first one is the peak.
@@ -120,10 +120,10 @@ class HeatMap {
   }
 
   results::Detection at(int of_class, int row, int column, double score) const {
-    const double unit = names_.size_unit == HeatMapOutput::SizeUnit::kCell ? cell_px_ : 1;
+    const double unit = names_.is_size_in_cells ? cell_px_ : 1;
     const auto length = [&](int side) {
       const double told = value(size_, side, row, column);
-      return unit * (names_.size_scale == HeatMapOutput::SizeScale::kLog ? std::exp(told) : told);
+      return unit * (names_.is_size_log ? std::exp(told) : told);
     };
     return detection_about((column + value(offset_, 0, row, column)) * cell_px_,
                            (row + value(offset_, 1, row, column)) * cell_px_,
