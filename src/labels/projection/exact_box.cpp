@@ -23,13 +23,24 @@ std::optional<Pixel> pixel_from_cam(const Sight& sight, const Vector3& p_in_cam)
   return pixel.allFinite() ? std::optional(pixel) : std::nullopt;
 }
 
-// Adds the silhouette at one moment.
-void add_instant(const Sight& sight,
-                 const SilhouettePoints& silhouette,
-                 const Rigid& world_from_body,
-                 double time_s,
-                 BoxBounds& bounds,
-                 bool& partly_unseen) {
+struct Outline {
+  BoxBounds bounds;
+  bool partly_unseen = false;
+
+  void add(const std::optional<Pixel>& pixel) {
+    if (pixel)
+      bounds.add(*pixel);
+    else
+      partly_unseen = true;
+  }
+};
+
+// The silhouette at one moment.
+Outline instant(const Sight& sight,
+                const SilhouettePoints& silhouette,
+                const Rigid& world_from_body,
+                double time_s) {
+  Outline outline;
   const Rigid cam_from_body = sight.cam_from_world * world_from_body;
   const Matrix3 rotation = cam_from_body.rotation.toRotationMatrix();
   for (std::size_t part = 0; part < silhouette.points.size(); ++part) {
@@ -37,14 +48,10 @@ void add_instant(const Sight& sight,
         model::body_from_part(silhouette.mesh->parts[part], time_s).cast<double>();
     const Matrix3 cam_from_part = rotation * body_from_part.linear();
     const Vector3 part_in_cam = rotation * body_from_part.translation() + cam_from_body.translation;
-    for (const Eigen::Vector3f& point : silhouette.points[part]) {
-      const auto pixel = pixel_from_cam(sight, cam_from_part * point.cast<double>() + part_in_cam);
-      if (pixel)
-        bounds.add(*pixel);
-      else
-        partly_unseen = true;
-    }
+    for (const Eigen::Vector3f& point : silhouette.points[part])
+      outline.add(pixel_from_cam(sight, cam_from_part * point.cast<double>() + part_in_cam));
   }
+  return outline;
 }
 
 // The path of one point over the picture during the exposure: a parabola through three projections,
@@ -63,30 +70,23 @@ class Sweep {
   }
 
   // Adds a point that is fixed in the body.
-  void add(const Vector3& p_in_body, BoxBounds& bounds, bool& partly_unseen) const {
-    const auto places = places_of(p_in_body);
-    if (!places) {
-      partly_unseen = true;
-      return;
-    }
-    const std::array<Pixel, 3>& at = *places;
-    if (is_within(at, bounds)) return;
+  void add(const Vector3& p_in_body, Outline& outline) const {
+    const auto at = places_of(p_in_body);
+    if (!at) return outline.add(std::nullopt);
+    if (is_within(*at, outline.bounds)) return;
     // Number of steps of the exposure: a choice.
     constexpr int kSteps = 4;
     for (int step = 0; step <= kSteps; ++step) {
       const double into_exposure_s =
           shutter_.exposure_s * (static_cast<double>(step) / kSteps - 0.5);
-      bounds.add(seen(at, into_exposure_s));
+      outline.add(seen(*at, into_exposure_s));
     }
   }
 
   // Adds a point that moves in the body: `p_in_body(dt_s)`, at so many moments of the exposure of
   // its own row.
   template <typename Place>
-  void add_moving(const Place& p_in_body,
-                  int moments,
-                  BoxBounds& bounds,
-                  bool& partly_unseen) const {
+  void add_moving(const Place& p_in_body, int moments, Outline& outline) const {
     const auto pixel_at = [&](double dt_s) -> std::optional<Pixel> {
       const auto at = places_of(p_in_body(dt_s));
       return at ? std::optional(along(*at, dt_s)) : std::nullopt;
@@ -97,10 +97,7 @@ class Sweep {
       std::optional<Pixel> pixel = pixel_at(into_exposure_s);
       for (int round = 0; shutter_.readout_s > 0 && pixel && round < kRounds; ++round)
         pixel = pixel_at(linear_row_s(*pixel) + into_exposure_s);
-      if (pixel)
-        bounds.add(*pixel);
-      else
-        partly_unseen = true;
+      outline.add(pixel);
     }
   }
 
@@ -171,13 +168,12 @@ class Sweep {
 constexpr double kSpinStepTurns = 1.0 / 120;
 constexpr int kMaxSpinSteps = 120;
 
-void add_swept(const Sight& sight,
-               const SilhouettePoints& silhouette,
-               const Rigid& world_from_body,
-               double time_s,
-               const Twist& body,
-               BoxBounds& bounds,
-               bool& partly_unseen) {
+Outline swept(const Sight& sight,
+              const SilhouettePoints& silhouette,
+              const Rigid& world_from_body,
+              double time_s,
+              const Twist& body) {
+  Outline outline;
   const Sweep sweep(sight, body, world_from_body);
   for (std::size_t i = 0; i < silhouette.points.size(); ++i) {
     const model::Part& part = silhouette.mesh->parts[i];
@@ -187,7 +183,7 @@ void add_swept(const Sight& sight,
     if (!part.moves()) {
       const Eigen::Affine3d fixed = body_from_part(0);
       for (const Eigen::Vector3f& point : silhouette.points[i])
-        sweep.add(fixed * point.cast<double>(), bounds, partly_unseen);
+        sweep.add(fixed * point.cast<double>(), outline);
       continue;
     }
     const double turns = model::fastest_turn_per_s(part) * sight.shutter.exposure_s;
@@ -197,9 +193,9 @@ void add_swept(const Sight& sight,
       sweep.add_moving(
           [&](double dt_s) -> Vector3 { return body_from_part(dt_s) * point.cast<double>(); },
           moments,
-          bounds,
-          partly_unseen);
+          outline);
   }
+  return outline;
 }
 
 }  // namespace
@@ -222,14 +218,10 @@ ExactBox exact_box(const Sight& sight,
                    const Twist& body) {
   check(silhouette.mesh && silhouette.points.size() == silhouette.mesh->parts.size(),
         "a silhouette has the parts of its mesh");
-  BoxBounds bounds;
-  ExactBox result;
-  if (sight.shutter.is_instant())
-    add_instant(sight, silhouette, world_from_body, time_s, bounds, result.partly_unseen);
-  else
-    add_swept(sight, silhouette, world_from_body, time_s, body, bounds, result.partly_unseen);
-  result.box = bounds.box();
-  return result;
+  const Outline outline = sight.shutter.is_instant()
+                              ? instant(sight, silhouette, world_from_body, time_s)
+                              : swept(sight, silhouette, world_from_body, time_s, body);
+  return {outline.bounds.box(), outline.partly_unseen};
 }
 
 Bearing bearing_of(const Vector3& in_cam) {
