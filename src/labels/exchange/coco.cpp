@@ -318,7 +318,7 @@ class CocoWriter : public FolderWriter {
   }
   std::string file_name(const Clip& clip, std::size_t i) const {
     const std::string stem = fs::path(clip.frames[i].picture).stem().string();
-    return clip.name + "/" + (stem.empty() ? padded(static_cast<std::int64_t>(i), 6) : stem) +
+    return clip.name + "/" + (stem.empty() ? fmt::format("{:06}", i) : stem) +
            options_.image_extension;
   }
   std::int64_t category_id(const std::string& category) const {

@@ -54,7 +54,7 @@ class CvatWriter : public FolderWriter {
     return fs::path(part) / clip.name / "images" / file_name(i);
   }
   std::string file_name(std::size_t i) const {
-    return "frame_" + padded(static_cast<std::int64_t>(i), 6) + options_.image_extension;
+    return fmt::format("frame_{:06}{}", i, options_.image_extension);
   }
 
   void add_images(pugi::xml_node top, const Clip& clip) const {

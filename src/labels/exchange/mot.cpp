@@ -63,7 +63,7 @@ class MotWriter : public FolderWriter {
  private:
   fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
     return fs::path(part) / clip.name / "img1" /
-           (padded(static_cast<std::int64_t>(i) + 1, 6) + options_.image_extension);
+           fmt::format("{:06}{}", i + 1, options_.image_extension);
   }
 
   // The names of the classes, one on each line.

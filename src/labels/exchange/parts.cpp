@@ -22,7 +22,7 @@ std::size_t FolderWriter::class_of(const std::string& category) const {
 }
 
 std::string numbered_stem(const Clip& clip, std::size_t i) {
-  return clip.name + "_" + padded(static_cast<std::int64_t>(i), 6);
+  return fmt::format("{}_{:06}", clip.name, i);
 }
 
 void Reading::fill(std::size_t more, const std::string& name) const {

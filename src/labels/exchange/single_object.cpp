@@ -338,8 +338,7 @@ class SingleObjectWriter : public FolderWriter {
     // Toolkits sort by name, so all names have the same number of digits.
     const auto longest = static_cast<int>(std::to_string(clip.frames.size()).size());
     const int digits = format_ == Format::kOtb ? std::max(4, longest) : 8;
-    const std::string name =
-        padded(static_cast<std::int64_t>(i) + 1, digits) + options_.image_extension;
+    const std::string name = fmt::format("{:0{}}{}", i + 1, digits, options_.image_extension);
     return pictures_of_sequence(format_, fs::path(part) / clip.name) / name;
   }
 

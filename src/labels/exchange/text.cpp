@@ -118,10 +118,6 @@ std::string one_line(std::string text) {
   return text;
 }
 
-std::string padded(std::int64_t number, int digits) {
-  return fmt::format("{:0{}}", number, digits);
-}
-
 std::pair<std::string, std::optional<std::int64_t>> name_and_number(const std::string& stem) {
   const std::size_t last = stem.find_last_not_of("0123456789");
   const std::size_t digits = last == std::string::npos ? 0 : last + 1;

@@ -62,9 +62,6 @@ int side_of(const std::optional<double>& value);
 // ends, on a line of a file.
 std::string one_line(std::string text);
 
-// A whole number with leading zeros.
-std::string padded(std::int64_t number, int digits);
-
 // "NAME_000123" -> {"NAME", 123}. Without a number at the end the result is {the whole text,
 // empty}.
 std::pair<std::string, std::optional<std::int64_t>> name_and_number(const std::string& stem);

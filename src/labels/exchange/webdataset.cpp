@@ -55,7 +55,7 @@ class WebdatasetWriter : public FolderWriter {
     Shards& shards = shards_[part];
     for (std::size_t i = 0; i < clip.frames.size(); ++i) {
       if (!shards.open)
-        shards.open.emplace(root_ / fmt::format("{}-{}.tar", part, padded(shards.count++, 6)));
+        shards.open.emplace(root_ / fmt::format("{}-{:06}.tar", part, shards.count++));
       const std::string key = key_of(clip, i);
       if (options_.with_images)
         shards.open->add(key + options_.image_extension, read_file(root_ / image(clip, part, i)));
