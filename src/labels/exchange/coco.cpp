@@ -27,12 +27,7 @@ namespace {
 class CocoReader {
  public:
   CocoReader(const fs::path& file, const Reading& in)
-      : file_(file),
-        json_(python_json(file)),
-        left_out_(in.warn),
-        warn_(in.warn),
-        options_(in.options),
-        classes_(in.classes) {}
+      : file_(file), in_(in), json_(python_json(file)), left_out_(in.warn) {}
 
   Clips read() {
     categories();
@@ -42,10 +37,10 @@ class CocoReader {
     for (auto& [id, image] : images_)
       (image.video ? videos_.at(*image.video).pictures : of_no_video)
           .push_back(std::move(image.picture));
-    Clips clips = clips_of_pictures(std::move(of_no_video), file_.stem().string(), file_, warn_);
+    Clips clips = clips_of_pictures(std::move(of_no_video), file_.stem().string(), file_, in_.warn);
     for (auto& [id, video] : videos_) {
       clips.push_back(clip_of_pictures(
-          fs::path(video.name).filename().string(), std::move(video.pictures), file_, warn_));
+          fs::path(video.name).filename().string(), std::move(video.pictures), file_, in_.warn));
       clips.back().frame_rate_hz = video.frame_rate_hz;
     }
     for (Clip& clip : clips) clip.category_ids = categories_;
@@ -71,7 +66,8 @@ class CocoReader {
       const bool has_above =
           category.has("supercategory") && category.value("supercategory").is_string();
       const std::string above = has_above ? category.text("supercategory") : "";
-      if (const auto stated = annotation::class_of_category(above)) classes_.emplace(name, *stated);
+      if (const auto stated = annotation::class_of_category(above))
+        in_.classes.emplace(name, *stated);
     }
     if (!json_.has("videos")) return;
     for (const JsonObject& video : json_.objects("videos")) {
@@ -122,7 +118,7 @@ class CocoReader {
   // Regions in which detections count neither way may share a track.
   bool is_region(const Label& label) const {
     return label.object_class == label_file::kIgnore ||
-           stated_class(label.category, options_) == label_file::kIgnore;
+           stated_class(label.category, in_.options) == label_file::kIgnore;
   }
 
   void annotations() {
@@ -150,7 +146,7 @@ class CocoReader {
     bool are_counted = false;
     for (auto& [id, image] : images_)
       if (number_tracks(image.picture.labels)) are_counted = true;
-    if (are_counted) warn(warn_, file_.string() + kTracksCounted);
+    if (are_counted) warn(in_.warn, file_.string() + kTracksCounted);
   }
 
   // Category and box of an annotation; empty if it is left out.
@@ -190,11 +186,9 @@ class CocoReader {
   }
 
   fs::path file_;
+  const Reading& in_;
   JsonDocument json_;
-  LeftOut left_out_;
-  const Warn& warn_;
-  const ReadOptions& options_;
-  std::map<std::string, std::string>& classes_;  // Reading::classes
+  LeftOut left_out_;  // of this file
   std::map<std::int64_t, std::string> categories_;
   std::map<std::int64_t, Image> images_;
   std::map<std::int64_t, Video> videos_;
@@ -205,21 +199,19 @@ class CocoReader {
 // pictures of the test part); or one in the folder or in each part's, as Roboflow writes them.
 std::vector<fs::path> annotation_files(const fs::path& folder, const Warn& warn) {
   std::vector<fs::path> files = files_with(folder / "annotations", ".json");
-  std::vector<fs::path> instances;
-  std::ranges::copy_if(files, std::back_inserter(instances), [](const fs::path& file) {
+  const auto others = std::stable_partition(files.begin(), files.end(), [](const fs::path& file) {
     return file.filename().string().starts_with("instances");
   });
-  if (!instances.empty() && instances.size() < files.size()) {
-    const auto other = std::ranges::find_if(files, [](const fs::path& file) {
-      return !file.filename().string().starts_with("instances");
-    });
-    airtruth::warn(warn,
-                   fmt::format("{}: {} files beside instances_*.json are not read (the first: {})",
-                               other->parent_path().string(),
-                               files.size() - instances.size(),
-                               other->filename().string()));
+  if (others != files.begin()) {
+    if (others != files.end())
+      airtruth::warn(
+          warn,
+          fmt::format("{}: {} files beside instances_*.json are not read (the first: {})",
+                      others->parent_path().string(),
+                      files.end() - others,
+                      others->filename().string()));
+    return {files.begin(), others};
   }
-  if (!instances.empty()) return instances;
   if (files.empty()) files = files_with(folder, ".json");
   for (const fs::path& part : entries(folder))
     if (const fs::path file = part / "_annotations.coco.json"; is_there(file))
