@@ -5,6 +5,8 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -29,13 +31,6 @@ void sort_pictures(std::vector<LabelledPicture>& pictures) {
   });
 }
 
-void expect_distinct(std::span<const LabelledPicture> pictures, const fs::path& source) {
-  std::set<std::string> names;
-  for (const LabelledPicture& picture : pictures)
-    if (!names.insert(picture.name).second)
-      throw Error("names the picture '" + picture.name + "' twice", {source.string()});
-}
-
 // The numbers of ordered pictures as frames: stated, in the names, or their places. Those that
 // begin with 1, as ffmpeg and MOTChallenge number, count from it.
 std::vector<std::int64_t> frame_numbers(std::span<const LabelledPicture> pictures) {
@@ -58,12 +53,6 @@ std::vector<std::int64_t> frame_numbers(std::span<const LabelledPicture> picture
   return places;
 }
 
-bool are_of_one_size(std::span<const LabelledPicture> pictures) {
-  return std::ranges::all_of(pictures, [&](const LabelledPicture& picture) {
-    return picture.width == pictures.front().width && picture.height == pictures.front().height;
-  });
-}
-
 // The folder of all pictures; empty, with a warning where some are there, if one is missing.
 fs::path media_of(std::span<const LabelledPicture> pictures,
                   const std::string& clip,
@@ -82,13 +71,6 @@ fs::path media_of(std::span<const LabelledPicture> pictures,
                                clip,
                                std::ranges::find_if(pictures, is_missing)->name));
   return {};
-}
-
-// "a-b" for the folder "a/b".
-std::string name_of_folder(const std::string& folder) {
-  std::string name = folder;
-  std::ranges::replace(name, '/', '-');
-  return name;
 }
 
 std::string first_of(const std::string& a, const std::string& b, const std::string& c) {
@@ -122,11 +104,16 @@ Clip clip_of_pictures(const std::string& name,
   Clip clip;
   clip.name = name;
   if (pictures.empty()) return clip;
-  expect_distinct(pictures, source);
+  std::set<std::string> names;
+  for (const LabelledPicture& picture : pictures)
+    if (!names.insert(picture.name).second)
+      throw Error("names the picture '" + picture.name + "' twice", {source.string()});
   sort_pictures(pictures);
-  if (are_of_one_size(pictures)) {
-    clip.width = pictures.front().width;
-    clip.height = pictures.front().height;
+  const auto size_of = [](const LabelledPicture& picture) {
+    return std::pair(picture.width, picture.height);
+  };
+  if (std::ranges::adjacent_find(pictures, std::not_equal_to<>(), size_of) == pictures.end()) {
+    std::tie(clip.width, clip.height) = size_of(pictures.front());
     clip.media = media_of(pictures, name, source, warn);
   } else {
     airtruth::warn(warn,
@@ -161,7 +148,8 @@ std::vector<Clip> clips_of_pictures(std::vector<LabelledPicture> pictures,
       std::vector<LabelledPicture> one;
       for (const std::size_t i : series) one.push_back(std::move(held[i]));
       const std::string common = picture_series::common_name(names_of(one));
-      const std::string folder = name_of_folder(key.second);
+      std::string folder = key.second;
+      std::ranges::replace(folder, '/', '-');
       const std::string name = all.size() > 1 ? first_of(common, folder, otherwise)
                                               : first_of(folder, otherwise, common);
       clips.push_back(clip_of_pictures(first_of(name, "images", ""), std::move(one), source, warn));
