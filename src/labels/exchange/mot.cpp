@@ -68,10 +68,7 @@ class MotWriter : public FolderWriter {
 
   // The names of the classes, one on each line.
   std::string classes() const {
-    if (!options_.mot_classes)
-      return (options_.categories.size() == 1 ? one_line(options_.categories.front())
-                                              : "aircraft") +
-             "\n";
+    if (!options_.mot_classes && options_.categories.size() != 1) return "aircraft\n";
     std::string text;
     for (const std::string& category : options_.categories) text += one_line(category) + "\n";
     return text;
@@ -94,10 +91,6 @@ class MotWriter : public FolderWriter {
     return false;
   }
 
-  std::size_t number_of_class(const Label& label) const {
-    return options_.mot_classes ? class_of(label.category) + 1 : 1;
-  }
-
   std::string line_of(const Label& label, std::size_t i, double unknown_visibility) const {
     const Box& b = label.box_px;
     // MOTChallenge's evaluation of one class passes over what is not to be considered.
@@ -111,7 +104,7 @@ class MotWriter : public FolderWriter {
                        b.width,
                        b.height,
                        is_considered ? 1 : 0,
-                       number_of_class(label),
+                       options_.mot_classes ? class_of(label.category) + 1 : 1,
                        label.visible.value_or(unknown_visibility),
                        label.range_m.value_or(kUnknown));
   }
