@@ -17,18 +17,22 @@
 #include "foundation/geometry/box.h"
 #include "labels/annotation/evision.h"
 #include "labels/exchange/parts.h"
-#include "labels/exchange/python_json.h"
 #include "labels/exchange/text.h"
 #include "labels/label_file/label_file.h"
 
 namespace airtruth::exchange {
 namespace {
 
-// The video of the same name beside an annotation.
-fs::path video_beside(fs::path file) {
+// The clip of an annotation, without frames. Its video has the same name beside it.
+Clip clip_of(const fs::path& file, const ReadOptions& options) {
+  Clip clip;
+  clip.name = file.stem().string();
   for (const char* extension : {".mp4", ".mkv", ".avi", ".mov", ".webm"})
-    if (file.replace_extension(extension); is_there(file)) return file;
-  return {};
+    if (const fs::path video = fs::path(file).replace_extension(extension);
+        clip.media.empty() && is_there(video))
+      clip.media = video;
+  if (options.size) std::tie(clip.width, clip.height) = *options.size;
+  return clip;
 }
 
 // The names of the E-Vision paper end in the aircraft: "1LRB737".
@@ -44,10 +48,7 @@ Clips read_evision(const Reading& in) {
   Clips clips;
   for (const fs::path& file : files_of(in.source, files_with(in.source, ".xml"), "*.xml")) {
     const annotation::Evision evision = annotation::read_evision(file);
-    Clip clip;
-    clip.name = file.stem().string();
-    clip.media = video_beside(file);
-    if (in.options.size) std::tie(clip.width, clip.height) = *in.options.size;
+    Clip clip = clip_of(file, in.options);
     for (std::size_t i = 0; i < evision.frames.size(); ++i) {
       const auto& frame = evision.frames[i];
       const auto number =
@@ -156,20 +157,13 @@ void count_tracks(Clip& clip, const Columns& columns, const fs::path& file, cons
 Clips read_csv(const Reading& in) {
   Clips clips;
   for (const fs::path& file : files_of(in.source, files_with(in.source, ".csv"), "*.csv")) {
-    Clip clip;
-    clip.name = file.stem().string();
-    clip.media = video_beside(file);
-    if (in.options.size) std::tie(clip.width, clip.height) = *in.options.size;
-    bool first = true;
-    bool has_header = false;
-    Columns columns;
+    Clip clip = clip_of(file, in.options);
+    std::vector<Line> lines = lines_of(file);
+    const bool has_header = !lines.empty() && lines.front().text.find_first_of("0123456789") != 0;
+    const Columns columns = has_header ? columns_of(lines.front(), file) : Columns();
+    if (has_header) lines.erase(lines.begin());
     std::set<std::pair<std::int64_t, std::int64_t>> tracks_of_frames;
-    for (const Line& line : lines_of(file)) {
-      const bool is_header = first && line.text.find_first_of("0123456789") != 0;
-      first = false;
-      has_header = has_header || is_header;
-      if (is_header) columns = columns_of(line, file);
-      if (is_header) continue;
+    for (const Line& line : lines) {
       const Where where{file.string(), line.number};
       const std::vector<double> n = numbers_of(line, file);
       if (!has_header && n.size() > columns.count)
