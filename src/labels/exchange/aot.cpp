@@ -42,13 +42,11 @@ constexpr double kNominalRateHz = 10;
 struct Times {
   std::vector<std::int64_t> ns;
   double rate_hz = kNominalRateHz;
-  bool is_rate_nominal = false;
   bool are_nominal = false;
 };
 
 Times times_of(const Clip& clip) {
   Times times;
-  times.is_rate_nominal = !clip.frame_rate_hz;
   times.rate_hz = clip.frame_rate_hz.value_or(kNominalRateHz);
   for (const LabelledFrame& frame : clip.frames) {
     const bool is_later = frame.time_s && std::abs(*frame.time_s) < kLongestClipS &&
@@ -93,7 +91,7 @@ class AotWriter : public Writer {
                   {"duration", duration_ms},
                   {"resolution", {{"height", clip.height}, {"width", clip.width}}},
                   {"time_origin_ns", kTimeOriginNs}};
-    if (times.is_rate_nominal) about["fps_is_nominal"] = true;
+    if (!clip.frame_rate_hz) about["fps_is_nominal"] = true;
     if (times.are_nominal) about["time_is_nominal"] = true;
     PartFile& file = files_.at(part);
     file.out() << (any_[part] ? ",\n" : "\n") << Json(clip.name).dump() << ":"
@@ -127,15 +125,11 @@ class AotWriter : public Writer {
 
   static void add_frame(const Clip& clip, std::size_t i, std::int64_t time_ns, Json& entities) {
     const LabelledFrame& frame = clip.frames[i];
-    Json bare = Json::object();
-    bare["time"] = kTimeOriginNs + time_ns;
-    bare["blob"] = {{"frame", i}};
-    bare["flight_id"] = clip.name;
-    bare["img_name"] = name_of(clip, time_ns);
-    bool any = false;
-    for (const Label& label : frame.labels) any = any || !kind_of(label).empty();
-    if (!any) bare["labels"] = Json::object();
-    if (!any) entities.push_back(bare);
+    Json bare = {{"time", kTimeOriginNs + time_ns},
+                 {"blob", {{"frame", i}}},
+                 {"flight_id", clip.name},
+                 {"img_name", name_of(clip, time_ns)}};
+    const std::size_t before = entities.size();
     for (const Label& label : frame.labels) {
       const std::string_view kind = kind_of(label);
       if (kind.empty()) continue;
@@ -152,6 +146,9 @@ class AotWriter : public Writer {
       entity["labels"] = {{"is_above_horizon", above}};
       entities.push_back(entity);
     }
+    if (entities.size() > before) return;
+    bare["labels"] = Json::object();
+    entities.push_back(bare);
   }
 
   fs::path root_;
@@ -190,7 +187,9 @@ class FlightReader {
         if (const auto time = entity.maybe_integer("time"))
           origin_ns_ = std::min(origin_ns_.value_or(*time), *time);
     for (const JsonObject& entity : entities) add(entity);
-    join();
+    // Pictures belong to frames by img_name.
+    const fs::path images = file_.parent_path().parent_path() / "Images" / clip_.name;
+    if (!pictures_in(images).empty()) join_by_name(clip_, images, in_.warn);
     return clip_;
   }
 
@@ -225,13 +224,6 @@ class FlightReader {
       if (above && *above != 0) label.above_horizon = *above > 0;
     }
     add_label(frame.labels, label, clip_, in_.left_out, entity.place());
-  }
-
-  // Pictures belong to frames by img_name.
-  void join() {
-    const fs::path images = file_.parent_path().parent_path() / "Images" / clip_.name;
-    if (pictures_in(images).empty()) return;
-    join_by_name(clip_, images, in_.warn);
   }
 
   // Where a range is unknown, the published files contain NaN, a string or no key.
