@@ -11,6 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
+#include "foundation/json/or_null.h"
 #include "labels/annotation/object_class.h"
 #include "labels/annotation/truth_fields.h"
 
@@ -22,13 +23,6 @@ constexpr std::int64_t kLargestTruthPixel = 1 << 29;
 
 int pixels(const JsonObject& object, const char* key) {
   return static_cast<int>(object.whole(key, -kLargestTruthPixel, kLargestTruthPixel));
-}
-
-template <std::size_t n>
-std::array<double, n> tuple(const JsonObject& object, const char* key) {
-  std::array<double, n> result{};
-  std::ranges::copy(object.numbers(key, n), result.begin());
-  return result;
 }
 
 std::array<double, 9> homography(const JsonObject& object, const char* key) {
@@ -46,10 +40,10 @@ struct Reading {
   void operator()(const char* key, std::int64_t& value) const { value = object.whole(key); }
   template <std::size_t n>
   void operator()(const char* key, std::array<double, n>& value) const {
-    value = tuple<n>(object, key);
+    std::ranges::copy(object.numbers(key, n), value.begin());
   }
   void operator()(const char* key, Box& value) const {
-    const auto v = tuple<4>(object, key);
+    const auto v = object.numbers(key, 4);
     value = {v[0], v[1], v[2], v[3]};
   }
   void operator()(const char* key, PixelBox& value) const {
@@ -86,14 +80,6 @@ Intruder intruder_from(const JsonObject& object) {
   return intruder;
 }
 
-void read_shake(const JsonObject& motion, Frame& frame) {
-  frame.frame_from_reference = homography(motion, "frame_from_reference");
-  Reading{motion}("rotation", frame.rotation);
-  if (motion.has("rate_radps")) Reading{motion}("rate_radps", frame.rate_radps);
-  if (motion.has("frame_from_reference_per_s"))
-    frame.frame_from_reference_per_s = homography(motion, "frame_from_reference_per_s");
-}
-
 Frame frame_from(const JsonObject& object) {
   Frame frame;
   frame.frame = object.whole("frame");
@@ -104,7 +90,11 @@ Frame frame_from(const JsonObject& object) {
   Reading{camera}("attitude_yaw_pitch_roll_deg", frame.camera_attitude_yaw_pitch_roll_deg);
   const JsonObject motion = object.object("motion");
   frame.motion_state = motion.text("state");
-  read_shake(motion, frame);
+  frame.frame_from_reference = homography(motion, "frame_from_reference");
+  Reading{motion}("rotation", frame.rotation);
+  if (motion.has("rate_radps")) Reading{motion}("rate_radps", frame.rate_radps);
+  if (motion.has("frame_from_reference_per_s"))
+    frame.frame_from_reference_per_s = homography(motion, "frame_from_reference_per_s");
   for (const JsonObject& intruder : object.objects("intruders"))
     frame.intruders.push_back(intruder_from(intruder));
   return frame;
@@ -117,8 +107,8 @@ lens::Facts lens_from(const JsonObject& object) {
     object.fail("model", "pinhole, brown_conrady or fisheye");
   lens.width = pixels(object, "width");
   lens.height = pixels(object, "height");
-  lens.focal_px = tuple<2>(object, "focal_px");
-  lens.principal_point_px = tuple<2>(object, "principal_point_px");
+  Reading{object}("focal_px", lens.focal_px);
+  Reading{object}("principal_point_px", lens.principal_point_px);
   lens.distortion = object.numbers("distortion");
   lens.max_angle_rad = object.maybe_number("max_angle_rad").value_or(kPi);
   return lens;
@@ -298,13 +288,12 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-OrderedJson json(double value) { return value; }
-OrderedJson json(std::int64_t value) { return value; }
-OrderedJson json(State state) { return enum_name(state); }
-template <std::size_t n>
-OrderedJson json(const std::array<double, n>& numbers) {
-  return numbers;
+// Of a number, or of several in an array.
+template <typename T>
+OrderedJson json(const T& value) {
+  return value;
 }
+OrderedJson json(State state) { return enum_name(state); }
 OrderedJson json(const Box& b) { return OrderedJson::array({b.x, b.y, b.width, b.height}); }
 OrderedJson json(const PixelBox& b) { return OrderedJson::array({b.x, b.y, b.width, b.height}); }
 
@@ -332,20 +321,16 @@ struct Writing {
 OrderedJson json(const EncounterTruth& truth) {
   OrderedJson object;
   each_measure(Writing{object}, truth);
-  OrderedJson volumes = OrderedJson::array();
-  for (const VolumeTruth& volume : truth.volumes) {
-    OrderedJson one = {{"name", volume.name}, {"inside", volume.inside}};
-    Writing{one}("to_violation_s", volume.to_violation_s);
-    volumes.push_back(std::move(one));
-  }
-  object["volumes"] = std::move(volumes);
+  OrderedJson& volumes = object["volumes"] = OrderedJson::array();
+  for (const VolumeTruth& volume : truth.volumes)
+    volumes.push_back({{"name", volume.name},
+                       {"inside", volume.inside},
+                       {"to_violation_s", or_null(volume.to_violation_s)}});
   return object;
 }
 
 OrderedJson json(const Intruder& intruder) {
-  OrderedJson object;
-  object["id"] = intruder.id;
-  object["aircraft"] = intruder.aircraft;
+  OrderedJson object = {{"id", intruder.id}, {"aircraft", intruder.aircraft}};
   if (!is_aircraft(intruder.object_class)) object["class"] = intruder.object_class;
   each_field(Writing{object}, intruder);
   if (!intruder.hidden_by_occluder) object.erase("hidden_by_occluder");
