@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 #include <string_view>
+#include <type_traits>
 
 #include <airtruth/labels.h>
 #include <fmt/format.h>
@@ -21,19 +22,13 @@ std::optional<double> rate_of(const std::optional<double>& value) {
   return value && *value > 0 && *value <= kHighestRate_hz ? value : std::nullopt;
 }
 
-namespace {
-
-void get(const JsonObject& json, const char* key, std::optional<double>& value) {
-  value = json.maybe_number(key);
-}
-void get(const JsonObject& json, const char* key, std::optional<bool>& value) {
-  value = json.maybe_truth(key);
-}
-
-}  // namespace
-
 void get_known(const JsonObject& json, Label& label, const char* visible_key) {
-  each_known(label, visible_key, [&](const char* key, auto& value) { get(json, key, value); });
+  each_known(label, visible_key, [&]<typename T>(const char* key, std::optional<T>& value) {
+    if constexpr (std::is_same_v<T, bool>)
+      value = json.maybe_truth(key);
+    else
+      value = json.maybe_number(key);
+  });
 }
 
 nlohmann::ordered_json json_of_label(const Label& label) {
@@ -85,13 +80,6 @@ int side(const JsonObject& json, const char* key) {
   return json.has(key) ? static_cast<int>(json.whole(key, 1, kLongestSide_px)) : 0;
 }
 
-std::optional<double> rate(const JsonObject& json, const char* key) {
-  const auto found = json.maybe_number(key);
-  if (found && !rate_of(found))
-    json.fail(key, fmt::format("a number above 0, up to {}", kHighestRate_hz));
-  return found;
-}
-
 LabelledFrame frame_of(const JsonObject& json) {
   LabelledFrame frame;
   frame.frame = json.count("frame");
@@ -115,7 +103,9 @@ Clip clip_of(const JsonObject& json) {
   clip.media = json.maybe_text("media").value_or("");
   clip.width = side(json, "width");
   clip.height = side(json, "height");
-  clip.frame_rate_hz = rate(json, "frame_rate_hz");
+  clip.frame_rate_hz = json.maybe_number("frame_rate_hz");
+  if (clip.frame_rate_hz && !rate_of(clip.frame_rate_hz))
+    json.fail("frame_rate_hz", fmt::format("a number above 0, up to {}", kHighestRate_hz));
   if (json.has("category_ids"))
     for (const JsonObject& category : json.objects("category_ids"))
       clip.category_ids[category.whole("id")] = category.text("name");
