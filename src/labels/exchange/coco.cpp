@@ -23,7 +23,6 @@
 namespace airtruth::exchange {
 namespace {
 
-// Reads one annotation file.
 class CocoReader {
  public:
   CocoReader(const fs::path& file, const Reading& in)

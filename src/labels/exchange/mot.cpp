@@ -126,7 +126,6 @@ class MotWriter : public FolderWriter {
   }
 };
 
-// The folder of one sequence.
 class SequenceFolder {
  public:
   SequenceFolder(fs::path folder, const std::vector<std::string>& classes, const Reading& in)

@@ -15,7 +15,6 @@
 // header.
 namespace airtruth::exchange {
 
-// What a writer is given.
 struct Writing {
   Format format;
   const fs::path& root;
@@ -57,7 +56,6 @@ using Clips = std::vector<Clip>;
 // kMaxFrames.
 constexpr std::size_t kMostFilled = 10'000'000;
 
-// What a reader is given.
 struct Reading {
   Format format;
   const fs::path& source;
@@ -116,7 +114,6 @@ std::vector<fs::path> files_of(const fs::path& source,
                                std::vector<fs::path> found,
                                const std::string& what);
 
-// Moves clips to the end of a list.
 void append(Clips& clips, Clips more);
 
 // The folder itself, what it holds, and what that holds, each folder before its content.

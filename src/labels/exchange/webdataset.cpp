@@ -69,7 +69,6 @@ class WebdatasetWriter : public FolderWriter {
   }
 
  private:
-  // The shards of one part.
   struct Shards {
     std::optional<tar::Writer> open;
     std::int64_t count = 0;
@@ -87,7 +86,6 @@ class WebdatasetWriter : public FolderWriter {
   std::map<std::string, Shards> shards_;
 };
 
-// Adds a sample to its clip.
 void add(const JsonDocument& json, std::map<std::string, Clip>& clips, const Reading& in) {
   const std::string name = fs::path(json.text("clip")).filename().string();
   Clip& clip = clips[name];

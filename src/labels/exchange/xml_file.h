@@ -29,7 +29,6 @@ class XmlFile {
 // Appends an element that holds a text, and returns it.
 pugi::xml_node add_text(pugi::xml_node node, const char* name, const std::string& text);
 
-// The document as text.
 std::string text_of(const pugi::xml_document& document,
                     const char* indent = "  ",
                     unsigned flags = pugi::format_default);

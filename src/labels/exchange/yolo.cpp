@@ -133,7 +133,6 @@ std::size_t seen_points_in(const std::vector<double>& numbers) {
   return has_seen ? (numbers.size() - 5) / 3 : 0;
 }
 
-// A folder of label files and the folder of their pictures.
 struct Folders {
   fs::path labels;
   fs::path pictures;
