@@ -22,8 +22,8 @@
 namespace airtruth::exchange {
 namespace {
 
-// The clip of an annotation, without frames. Its video has the same name beside it.
-Clip clip_of(const fs::path& file, const ReadOptions& options) {
+// The clip of an annotation. Its video has the same name beside it.
+Clip clip_without_frames(const fs::path& file, const ReadOptions& options) {
   Clip clip;
   clip.name = file.stem().string();
   for (const char* extension : {".mp4", ".mkv", ".avi", ".mov", ".webm"})
@@ -47,7 +47,7 @@ Clips read_evision(const Reading& in) {
   Clips clips;
   for (const fs::path& file : files_of(in.source, files_with(in.source, ".xml"), "*.xml")) {
     const annotation::Evision evision = annotation::read_evision(file);
-    Clip clip = clip_of(file, in.options);
+    Clip clip = clip_without_frames(file, in.options);
     for (std::size_t i = 0; i < evision.frames.size(); ++i) {
       const auto& frame = evision.frames[i];
       const auto number =
@@ -156,7 +156,7 @@ void count_tracks(Clip& clip, const Columns& columns, const fs::path& file, cons
 Clips read_csv(const Reading& in) {
   Clips clips;
   for (const fs::path& file : files_of(in.source, files_with(in.source, ".csv"), "*.csv")) {
-    Clip clip = clip_of(file, in.options);
+    Clip clip = clip_without_frames(file, in.options);
     std::vector<Line> lines = lines_of(file);
     const bool has_header = !lines.empty() && lines.front().text.find_first_of("0123456789") != 0;
     const Columns columns = has_header ? columns_of(lines.front(), file) : Columns();
