@@ -128,7 +128,8 @@ class SequenceReader {
     clip_.name = folder_.filename().string();
     category_ = in_.options.category;
     about();
-    boxes();
+    std::int64_t track = 1;
+    for (const fs::path& file : files_of_boxes(format_, folder_)) boxes_of(file, track++);
     columns();
     join();
     return clip_;
@@ -205,11 +206,6 @@ class SequenceReader {
 
   static std::vector<double> known_numbers(const std::string& text, const fs::path& file) {
     return text == "unknown" ? std::vector<double>() : numbers_of({0, text}, file);
-  }
-
-  void boxes() {
-    std::int64_t track = 1;
-    for (const fs::path& file : files_of_boxes(format_, folder_)) boxes_of(file, track++);
   }
 
   void boxes_of(const fs::path& file, std::int64_t track) {
@@ -364,13 +360,6 @@ class SingleObjectWriter : public FolderWriter {
     });
   }
 
-  // True where a frame at least knows it.
-  static bool is_known(const Clip& clip, std::optional<double> Label::*member) {
-    return std::ranges::any_of(clip.frames, [&](const LabelledFrame& frame) {
-      return !frame.labels.empty() && (frame.labels.front().*member).has_value();
-    });
-  }
-
   static void add_got10k(const Clip& clip, const fs::path& folder) {
     write_column(folder / "absence.label", clip, [](const Label* label) {
       return std::string(label == nullptr ? "1" : "0");
@@ -426,12 +415,16 @@ class SingleObjectWriter : public FolderWriter {
       });
     for (const auto& [name, value] :
          {std::pair("range_m.value", &Label::range_m),
-          std::pair("contrast_to_noise.value", &Label::contrast_to_noise)})
-      if (is_known(clip, value))
+          std::pair("contrast_to_noise.value", &Label::contrast_to_noise)}) {
+      const auto knows_it = [value = value](const LabelledFrame& frame) {
+        return !frame.labels.empty() && frame.labels.front().*value;
+      };
+      if (std::ranges::any_of(clip.frames, knows_it))
         write_column(folder / name, clip, [value = value](const Label* label) {
           const auto known = label == nullptr ? std::nullopt : label->*value;
           return known ? number(*known) : std::string("nan");
         });
+    }
   }
 
   // The starts of this program's own multi-start runs (<airtruth/vot.h>).
