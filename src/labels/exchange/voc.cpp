@@ -108,37 +108,21 @@ std::optional<bool> flag(const pugi::xml_node& object, const char* name) {
 // The pictures of the folders by their names without ending: the folder and the name.
 using ByStem = std::map<std::string, std::pair<fs::path, std::string>>;
 
-ByStem by_stem(std::span<const fs::path> folders) {
-  ByStem found;
-  for (const fs::path& folder : folders)
-    for (const std::string& name : pictures_in(folder))
-      found.emplace(fs::path(name).stem().string(), std::pair(folder, name));
-  return found;
-}
-
-// The picture of an annotation: <filename>, or else the picture with the annotation's own name.
-LabelledPicture picture_of(const fs::path& file,
-                           const std::string& stated,
-                           std::span<const fs::path> folders,
-                           const ByStem& stems) {
-  LabelledPicture picture;
-  picture.name = stated;
-  picture.folder =
-      stated.empty() ? fs::path() : folder_of_picture(folders, stated, {file.string()});
-  if (!picture.folder.empty()) return picture;
-  if (const auto found = stems.find(file.stem().string()); found != stems.end())
-    std::tie(picture.folder, picture.name) = found->second;
-  if (picture.name.empty()) picture.name = file.stem().string();
-  return picture;
-}
-
 LabelledPicture read_picture(const fs::path& file,
                              std::span<const fs::path> folders,
                              const ByStem& stems,
                              const Reading& in) {
   const XmlFile xml(file);
   const pugi::xml_node top = xml.top("annotation");
-  LabelledPicture picture = picture_of(file, top.child_value("filename"), folders, stems);
+  // <filename>, or else the picture with the annotation's own name.
+  LabelledPicture picture;
+  picture.name = top.child_value("filename");
+  if (!picture.name.empty())
+    picture.folder = folder_of_picture(folders, picture.name, {file.string()});
+  const auto found = stems.find(file.stem().string());
+  if (picture.folder.empty() && found != stems.end())
+    std::tie(picture.folder, picture.name) = found->second;
+  if (picture.name.empty()) picture.name = file.stem().string();
   if (const pugi::xml_node size = top.child("size")) {
     picture.width = side_of(xml.number(size, "width"));
     picture.height = side_of(xml.number(size, "height"));
@@ -182,7 +166,10 @@ Clips read_voc(const Reading& in) {
   Clips clips;
   for (const fs::path& annotations : folders_of_annotations(in.source)) {
     const std::vector<fs::path> folders = {annotations.parent_path() / "JPEGImages", annotations};
-    const ByStem stems = by_stem(folders);
+    ByStem stems;
+    for (const fs::path& folder : folders)
+      for (const std::string& name : pictures_in(folder))
+        stems.emplace(fs::path(name).stem().string(), std::pair(folder, name));
     std::vector<LabelledPicture> pictures;
     for (const fs::path& file : files_with(annotations, ".xml"))
       pictures.push_back(read_picture(file, folders, stems, in));
