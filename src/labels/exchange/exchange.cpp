@@ -187,20 +187,6 @@ void classify(std::vector<Clip>& clips,
                     labels));
 }
 
-WriteOptions options_of(std::span<const Part> parts) {
-  WriteOptions options;
-  options.with_images = false;
-  std::set<std::string> categories;
-  for (const Part& part : parts) {
-    options.parts.push_back(part.name);
-    for (const Clip& clip : part.clips)
-      for (const LabelledFrame& frame : clip.frames)
-        for (const Label& label : frame.labels) categories.insert(label.category);
-  }
-  options.categories = {categories.begin(), categories.end()};
-  return options;
-}
-
 }  // namespace
 
 Format format_from_name(std::string_view name) {
@@ -384,11 +370,19 @@ void write_clips(Format format, const fs::path& folder, std::span<const Part> pa
     throw Error("exists and is not empty; expected a new folder", {folder.string()});
   make_folders(folder);
   label_file::CocoNumbers numbers;
-  for (const Part& part : parts)
-    for (const Clip& clip : part.clips) numbers.add(clip);
-  WriteOptions options = options_of(parts);
-  options.category_ids =
-      numbers.category_ids({options.categories.begin(), options.categories.end()}, {});
+  WriteOptions options;
+  options.with_images = false;
+  std::set<std::string> categories;
+  for (const Part& part : parts) {
+    options.parts.push_back(part.name);
+    for (const Clip& clip : part.clips) {
+      numbers.add(clip);
+      for (const LabelledFrame& frame : clip.frames)
+        for (const Label& label : frame.labels) categories.insert(label.category);
+    }
+  }
+  options.categories = {categories.begin(), categories.end()};
+  options.category_ids = numbers.category_ids(categories, {});
   const auto writer = make_writer(format, folder, options);
   std::size_t clip_number = 0;
   for (const Part& part : parts) {
