@@ -77,7 +77,14 @@ class CocoReader {
   }
 
   void images() {
-    const std::vector<fs::path> folders = folders_of_pictures();
+    // The folders near the annotations in which the pictures may lie: the annotations' own folder,
+    // as Roboflow writes them, and images in it; images/PART as this program and CVAT write them;
+    // PART and images as COCO is published.
+    const std::string stem = file_.stem().string();
+    const std::string part = stem.substr(stem.rfind('_') + 1);
+    const fs::path own = file_.parent_path(), root = own.parent_path();
+    const std::vector<fs::path> folders = {
+        own, own / "images", root / "images" / part, root / "images", root / part, root};
     for (const JsonObject& json : json_.objects("images")) {
       Image image;
       LabelledPicture& picture = image.picture;
@@ -95,29 +102,12 @@ class CocoReader {
     }
   }
 
-  // The folders near the annotations in which the pictures may lie: the annotations' own folder, as
-  // Roboflow writes them, and images in it; images/PART as this program and CVAT write them; PART
-  // and images as COCO is published.
-  std::vector<fs::path> folders_of_pictures() const {
-    const std::string stem = file_.stem().string();
-    const std::string part = stem.substr(stem.rfind('_') + 1);
-    const fs::path root = file_.parent_path().parent_path();
-    const fs::path own = file_.parent_path();
-    return {own, own / "images", root / "images" / part, root / "images", root / part, root};
-  }
-
   // The track of an annotation; CVAT writes it as an attribute.
   static std::int64_t track_of(const JsonObject& annotation) {
     for (const char* key : {"track_id", "instance_id"})
       if (const auto track = annotation.maybe_integer(key)) return *track;
     if (!annotation.has("attributes")) return kNoTrack;
     return annotation.object("attributes").maybe_integer("track_id").value_or(kNoTrack);
-  }
-
-  // Regions in which detections count neither way may share a track.
-  bool is_region(const Label& label) const {
-    return label.object_class == label_file::kIgnore ||
-           stated_class(label.category, in_.options) == label_file::kIgnore;
   }
 
   void annotations() {
@@ -133,7 +123,9 @@ class CocoReader {
       std::optional<Label> label = label_of(annotation, picture);
       if (!label) continue;
       label->track = track_of(annotation);
-      if (label->track >= 0 && !is_region(*label) &&
+      // Regions in which detections count neither way may share a track.
+      if (label->track >= 0 && label->object_class != label_file::kIgnore &&
+          stated_class(label->category, in_.options) != label_file::kIgnore &&
           !tracks_of_images.emplace(image, label->track).second)
         annotation.fail(
             fmt::format("has the track {} a second time in image {}", label->track, image));
