@@ -38,7 +38,14 @@ class YoloWriter : public FolderWriter {
     expect_held(Format::kYolo, clip);
     for (std::size_t i = 0; i < clip.frames.size(); ++i) {
       std::string text;
-      for (const Label& label : clip.frames[i].labels) text += line_of(label, clip);
+      for (const Label& label : clip.frames[i].labels)
+        if (const auto b = clipped(label.box_px, clip.width, clip.height))
+          text += fmt::format("{} {} {} {} {}\n",
+                              class_of(label.category),
+                              (b->x + b->width / 2) / clip.width,
+                              (b->y + b->height / 2) / clip.height,
+                              b->width / clip.width,
+                              b->height / clip.height);
       write_file(root_ / "labels" / part / (numbered_stem(clip, i) + ".txt"), text, Flush::kLater);
     }
   }
@@ -67,16 +74,6 @@ class YoloWriter : public FolderWriter {
   // YAML's double-quoted strings include JSON's strings.
   static std::string quoted(const std::string& text) {
     return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  }
-  std::string line_of(const Label& label, const Clip& clip) const {
-    const auto b = clipped(label.box_px, clip.width, clip.height);
-    if (!b) return {};
-    return fmt::format("{} {} {} {} {}\n",
-                       class_of(label.category),
-                       (b->x + b->width / 2) / clip.width,
-                       (b->y + b->height / 2) / clip.height,
-                       b->width / clip.width,
-                       b->height / clip.height);
   }
 };
 
@@ -160,14 +157,15 @@ std::vector<Folders> folders_of(const fs::path& root) {
 
 class YoloReader {
  public:
-  explicit YoloReader(const Reading& in) : in_(in), root_(in.source) {}
+  explicit YoloReader(const Reading& in) : in_(in) {}
 
   Clips read() {
-    const std::vector<Folders> folders = folders_of(root_);
+    const std::vector<Folders> folders = folders_of(in_.source);
     if (folders.empty())
-      throw Error("holds no labels/, no PART/labels/ and no obj_train_data/", {root_.string()});
+      throw Error("holds no labels/, no PART/labels/ and no obj_train_data/",
+                  {in_.source.string()});
     Clips clips;
-    const Stated of_root = stated_in(root_);
+    const Stated of_root = stated_in(in_.source);
     for (const Folders& one : folders) {
       stated_ = of_root;
       // LabelImg writes the names beside the labels.
@@ -222,6 +220,7 @@ class YoloReader {
   }
 
   void add(const Line& line, const fs::path& file, LabelledPicture& picture) {
+    const Where where{file.string(), line.number};
     const std::vector<double> n = numbers_of(line, file);
     const auto whole = n.size() < 5 ? std::nullopt : whole_in(n[0], 0, 1'000'000);
     // Key points stand behind the box. With more numbers after it the line is a polygon, as in
@@ -231,7 +230,7 @@ class YoloReader {
       throw Error(fmt::format("has {0} key points 'x y visibility' behind a box; expected "
                               "kpt_shape: [{0}, 3] in data.yaml",
                               seen),
-                  {file.string(), line.number});
+                  where);
     const bool is_polygon = (n.size() < 5 + points ? n.size() : n.size() - points) > 6;
     if (is_polygon && points > 0)
       throw Error(
@@ -239,10 +238,9 @@ class YoloReader {
                       "of the key points, by kpt_shape in data.yaml",
                       n.size(),
                       points),
-          {file.string(), line.number});
+          where);
     if (!whole || (is_polygon && n.size() % 2 == 0))
-      throw Error("is no 'class x y width height' and no 'class' with a polygon",
-                  {file.string(), line.number});
+      throw Error("is no 'class x y width height' and no 'class' with a polygon", where);
     const auto category = static_cast<std::size_t>(*whole);
     Label label;
     label.track = std::ssize(picture.labels) + 1;
@@ -259,15 +257,10 @@ class YoloReader {
                       n[3] * picture.width,
                       n[4] * picture.height};
     }
-    add_label(picture.labels,
-              std::move(label),
-              picture,
-              in_.left_out,
-              file.string() + ":" + std::to_string(line.number));
+    add_label(picture.labels, std::move(label), picture, in_.left_out, to_string(where));
   }
 
   const Reading& in_;
-  fs::path root_;
   Stated stated_;  // of the folder that is read
 };
 
