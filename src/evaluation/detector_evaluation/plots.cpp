@@ -15,8 +15,17 @@ Series series_of(const scores::Assessment& assessment, std::size_t k, plot::Mark
   return {.name = assessment.detectors[k].name, .mark = mark, .style = plot::style_of(k)};
 }
 
+// A value with its interval; nothing where there is none.
 void add_point(Series& series, double x, const statistics::Proportion& share) {
-  series.add(x, share.value, share.low, share.high);
+  if (share.trials > 0) series.add(x, share.value, share.low, share.high);
+}
+void add_point(Series& series, double x, const std::optional<scores::WeightedMean>& mean) {
+  if (!mean) return;
+  const auto interval = mean->interval.value_or(evaluation::Interval{mean->mean, mean->mean});
+  series.add(x, mean->mean, interval.low, interval.high);
+}
+void add_point(Series& series, double x, std::int64_t count) {
+  series.add(x, static_cast<double>(count));
 }
 
 Plot precision_plot(const scores::Assessment& assessment,
@@ -55,50 +64,28 @@ Plot froc_plot(const scores::Assessment& assessment,
     if (!(least > 0)) continue;
     Series series = series_of(assessment, k, plot::Mark::kLine);
     for (const evaluation::FrocPoint& point : froc.points)
-      if (point.detection.trials > 0)
-        add_point(series, std::max(point.*rate, least), point.detection);
+      add_point(series, std::max(point.*rate, least), point.detection);
     report::keep(plot, std::move(series));
   }
   return plot;
 }
 
-// `value`: adds the point's value at x.
+template <typename Value>
 Plot operating_plot(const scores::Assessment& assessment,
                     const std::string& label,
-                    const auto& add_value) {
+                    Value scores::OperatingPoint::*value,
+                    std::optional<double> most = {}) {
   Plot plot{.x = {.label = "false tracks an hour (none: at the left)", .is_logarithmic = true},
-            .y = {.label = label, .min = 0}};
+            .y = {.label = label, .min = 0, .max = most}};
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
     const scores::DetectorScore& detector = assessment.detectors[k];
     const double least = half_an_event(detector.froc.hours);
     if (!detector.tracks || !(least > 0)) continue;
     Series series = series_of(assessment, k, plot::Mark::kLineAndPoints);
     for (const scores::OperatingPoint& point : detector.tracks->operating_curve)
-      add_value(series, std::max(point.false_tracks_per_hour, least), point);
+      add_point(series, std::max(point.false_tracks_per_hour, least), point.*value);
     report::keep(plot, std::move(series));
   }
-  return plot;
-}
-
-Plot declaration_range_plot(const scores::Assessment& assessment) {
-  return operating_plot(
-      assessment,
-      "mean declaration range, m",
-      [](Series& series, double x, const scores::OperatingPoint& point) {
-        if (!point.range_m) return;
-        const scores::WeightedMean& range = *point.range_m;
-        const auto interval = range.interval.value_or(evaluation::Interval{range.mean, range.mean});
-        series.add(x, range.mean, interval.low, interval.high);
-      });
-}
-
-Plot declared_plot(const scores::Assessment& assessment) {
-  Plot plot = operating_plot(assessment,
-                             "share of encounters declared",
-                             [](Series& series, double x, const scores::OperatingPoint& point) {
-                               if (point.declared.trials > 0) add_point(series, x, point.declared);
-                             });
-  plot.y.max = 1;
   return plot;
 }
 
@@ -146,48 +133,25 @@ Plot by_plot(const scores::Assessment& assessment, const scores::Quantity& quant
 }
 
 // Bars or dots over the keys of a map of each detector.
+template <typename Value>
 Plot named_plot(const scores::Assessment& assessment,
                 const std::string& label,
                 plot::Mark mark,
-                const auto& map_of,
-                const auto& add_value,
+                std::map<std::string, Value> scores::DetectorScore::*values,
                 std::optional<double> most = {}) {
   std::set<std::string> names;
   for (const scores::DetectorScore& detector : assessment.detectors)
-    for (const auto& [name, value] : map_of(detector)) names.insert(name);
+    for (const auto& [name, value] : detector.*values) names.insert(name);
   Plot plot{.y = {.label = label, .min = 0, .max = most}};
   plot.x.names.assign(names.begin(), names.end());
   if (mark == plot::Mark::kDots) shade_places(plot);
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
     Series series = series_of(assessment, k, mark);
-    for (const auto& [name, value] : map_of(assessment.detectors[k]))
-      add_value(series, static_cast<double>(std::distance(names.begin(), names.find(name))), value);
+    for (const auto& [name, value] : assessment.detectors[k].*values)
+      add_point(series, static_cast<double>(std::distance(names.begin(), names.find(name))), value);
     report::keep(plot, std::move(series));
   }
   return plot;
-}
-
-Plot false_alarms_plot(const scores::Assessment& assessment) {
-  return named_plot(
-      assessment,
-      "false alarms",
-      plot::Mark::kBars,
-      [](const scores::DetectorScore& detector) -> const auto& { return detector.false_alarms_by; },
-      [](Series& series, double x, std::int64_t count) {
-        series.add(x, static_cast<double>(count));
-      });
-}
-
-Plot mistaken_plot(const scores::Assessment& assessment) {
-  return named_plot(
-      assessment,
-      "share of its frames taken for an aircraft",
-      plot::Mark::kDots,
-      [](const scores::DetectorScore& detector) -> const auto& { return detector.mistaken_by; },
-      [](Series& series, double x, const statistics::Proportion& share) {
-        add_point(series, x, share);
-      },
-      1);
 }
 
 }  // namespace
@@ -212,12 +176,24 @@ std::vector<report::NamedPlot> detection_plots(const scores::Assessment& assessm
                  "false alarms an hour",
                  &evaluation::FrocPoint::false_alarms_per_hour,
                  [](const evaluation::Froc& froc) { return froc.hours; })},
-      {"operating", declaration_range_plot(assessment)},
-      {"declared", declared_plot(assessment)}};
+      {"operating",
+       operating_plot(assessment, "mean declaration range, m", &scores::OperatingPoint::range_m)},
+      {"declared",
+       operating_plot(
+           assessment, "share of encounters declared", &scores::OperatingPoint::declared, 1)}};
   for (const scores::Quantity& quantity : scores::quantities())
     plots.push_back({"by_" + quantity.key, by_plot(assessment, quantity)});
-  plots.push_back({"false_alarms", false_alarms_plot(assessment)});
-  plots.push_back({"mistaken", mistaken_plot(assessment)});
+  plots.push_back({"false_alarms",
+                   named_plot(assessment,
+                              "false alarms",
+                              plot::Mark::kBars,
+                              &scores::DetectorScore::false_alarms_by)});
+  plots.push_back({"mistaken",
+                   named_plot(assessment,
+                              "share of its frames taken for an aircraft",
+                              plot::Mark::kDots,
+                              &scores::DetectorScore::mistaken_by,
+                              1)});
   return report::with_data(std::move(plots));
 }
 
