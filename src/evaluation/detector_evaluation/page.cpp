@@ -61,22 +61,14 @@ std::vector<Plan> plans_of(const scores::Assessment& assessment, Film& film) {
   film.misses.resize(assessment.detectors.size());
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
     const scores::DetectorScore& detector = assessment.detectors[k];
-    film.false_alarms[k].resize(detector.false_alarms.size());
-    film.misses[k].resize(detector.misses.size());
-    for (std::size_t i = 0; i < detector.false_alarms.size(); ++i) {
-      const scores::FalseAlarm& alarm = detector.false_alarms[i];
-      const scores::ScoredDetections& scored = detector.sequences[alarm.sequence];
-      plans[scored.truth].cutouts[alarm.frame].push_back(
-          {scored.detections.frames[alarm.frame][alarm.detection].box_px,
-           &film.false_alarms[k][i]});
-    }
-    for (std::size_t i = 0; i < detector.misses.size(); ++i) {
-      const scores::Miss& miss = detector.misses[i];
-      const std::size_t truth = detector.sequences[miss.sequence].truth;
-      plans[truth].cutouts[miss.frame].push_back(
-          {assessment.truths[truth].frames[miss.frame].objects[miss.index].box_px,
-           &film.misses[k][i]});
-    }
+    const auto add = [&](const auto& entries, std::vector<drawing::Cutout>& cutouts) {
+      cutouts.resize(entries.size());
+      for (std::size_t i = 0; i < entries.size(); ++i)
+        plans[detector.sequences[entries[i].sequence].truth].cutouts[entries[i].frame].push_back(
+            {entries[i].box_px, &cutouts[i]});
+    };
+    add(detector.false_alarms, film.false_alarms[k]);
+    add(detector.misses, film.misses[k]);
   }
   // Sequences without results are not shown.
   std::set<std::size_t> with_results;

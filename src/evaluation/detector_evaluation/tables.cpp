@@ -258,9 +258,8 @@ Json tracks_json_of(const scores::DetectorScore& detector, const scores::Assessm
 Json json_of(const scores::FalseAlarm& alarm,
              const scores::DetectorScore& detector,
              const scores::Assessment& assessment) {
-  const scores::ScoredDetections& scored = detector.sequences[alarm.sequence];
-  const scores::TruthSequence& truth = assessment.truths[scored.truth];
-  const Box& box = scored.detections.frames[alarm.frame][alarm.detection].box_px;
+  const scores::TruthSequence& truth = assessment.truths[detector.sequences[alarm.sequence].truth];
+  const Box& box = alarm.box_px;
   return {{"sequence", truth.name},
           {"frame", truth.frames[alarm.frame].frame},
           {"score", alarm.score},
@@ -275,15 +274,14 @@ Json json_of(const scores::Miss& miss,
              const scores::DetectorScore& detector,
              const scores::Assessment& assessment) {
   const scores::TruthSequence& truth = assessment.truths[detector.sequences[miss.sequence].truth];
-  const scores::TruthObject& object = truth.frames[miss.frame].objects[miss.index];
-  const Box& box = object.box_px;
+  const Box& box = miss.box_px;
   return {{"sequence", truth.name},
           {"object", miss.object},
           {"first_frame", truth.frames[miss.first_frame].frame},
           {"frames", miss.frames},
           {"frame", truth.frames[miss.frame].frame},
           {"box_px", {box.x, box.y, box.width, box.height}},
-          {"range_m", or_null(object.range_m)},
+          {"range_m", or_null(miss.range_m)},
           {"contrast_to_noise", or_null(miss.contrast_to_noise)}};
 }
 

@@ -129,8 +129,7 @@ std::vector<Miss> misses_of(std::size_t sequence,
       return found != best.end() && found->second->score >= score;
     };
     std::map<std::int64_t, Miss> going_on;
-    for (std::size_t k = 0; k < truth.frames[i].objects.size(); ++k) {
-      const TruthObject& object = truth.frames[i].objects[k];
+    for (const TruthObject& object : truth.frames[i].objects) {
       if (!object.is_aircraft() || !object.counts || is_detected(object.id)) continue;
       const auto before = open.extract(object.id);
       const Miss begun{.sequence = sequence, .object = object.id, .first_frame = i};
@@ -141,7 +140,8 @@ std::vector<Miss> misses_of(std::size_t sequence,
       ++miss.frames;
       if (!is_better) continue;
       miss.frame = i;
-      miss.index = k;
+      miss.box_px = object.box_px;
+      miss.range_m = object.range_m;
       miss.contrast_to_noise = object.contrast_to_noise;
       miss.size_px = object.size_px();
     }

@@ -43,9 +43,11 @@ struct Miss {
   std::size_t first_frame = 0;
   std::int64_t frames = 0;  // that show it
   // The frame where it should have been easiest: the largest contrast to noise where that is known,
-  // else the largest box. Indices in TruthSequence::frames and TruthFrame::objects.
+  // else the largest box. Index in TruthSequence::frames.
   std::size_t frame = 0;
-  std::size_t index = 0;
+  // Of the aircraft there.
+  Box box_px;
+  std::optional<double> range_m;
   // What it was chosen by.
   std::optional<double> contrast_to_noise;
   double size_px = 0;
