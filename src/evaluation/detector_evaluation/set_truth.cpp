@@ -18,7 +18,7 @@
 #include "foundation/json/json_object.h"
 #include "labels/annotation/truth.h"
 #include "picture/video/numbered_frames.h"
-#include "scene/scene/camera_keys.h"
+#include "scene/scene/scene.h"
 #include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
 #include "sequence/replay/recorded_inputs.h"
@@ -60,7 +60,6 @@ scores::TruthSequence imported_truth(const labelled::LabelledSet& set,
   truth.name = name;
   truth.media = clip.media;
   truth.background_file = clip.media.filename().string();
-  truth.background = set.facts(name).background_name;
   expected.category_ids = clip.category_ids;
   truth.width = clip.width;
   truth.height = clip.height;
@@ -85,20 +84,6 @@ scores::TruthSequence imported_truth(const labelled::LabelledSet& set,
   return truth;
 }
 
-const exchange::Label* label_of(const exchange::LabelledFrame& frame, std::int64_t track) {
-  for (const exchange::Label& label : frame.labels)
-    if (label.track == track) return &label;
-  return nullptr;
-}
-
-scores::TruthObject object_of(const exchange::Label& label, const annotation::Intruder& intruder) {
-  scores::TruthObject object = object_of(label);
-  object.range_m = intruder.range_m;
-  object.azimuth_deg = intruder.azimuth_deg;
-  object.elevation_deg = intruder.elevation_deg;
-  return object;
-}
-
 // What is visible has a box: the covered one, or else, for what does not count, the visible one.
 scores::TruthFrame frame_of(const annotation::Frame& truth, const lens::Facts& lens) {
   scores::TruthFrame frame;
@@ -109,11 +94,16 @@ scores::TruthFrame frame_of(const annotation::Frame& truth, const lens::Facts& l
   const auto visible =
       sequences::labels_of(truth, dataset::Boxes::kVisible, lens.width, lens.height);
   for (const exchange::Label& shown : visible.labels) {
-    const exchange::Label* label = label_of(covered, shown.track);
+    const auto label = std::ranges::find(covered.labels, shown.track, &exchange::Label::track);
+    const bool is_covered = label != covered.labels.end();
     const annotation::Intruder& intruder =
         truth.intruders[static_cast<std::size_t>(shown.track) - 1];
-    frame.objects.push_back(object_of(label != nullptr ? *label : shown, intruder));
-    frame.objects.back().counts = label != nullptr;
+    scores::TruthObject& object =
+        frame.objects.emplace_back(object_of(is_covered ? *label : shown));
+    object.counts = is_covered;
+    object.range_m = intruder.range_m;
+    object.azimuth_deg = intruder.azimuth_deg;
+    object.elevation_deg = intruder.elevation_deg;
   }
   return frame;
 }
@@ -215,15 +205,12 @@ scores::TruthSequence rendered_truth(const labelled::LabelledSet& set,
   truth.first_background_frame = finished.scene->background.first_frame;
   truth.media = finished.video;
   truth.background_file = finished.scene->background.video.filename().string();
-  truth.background = finished.scene->background.name.empty() ? truth.background_file
-                                                             : finished.scene->background.name;
   truth.background_cut = fmt::format("{} from {}",
                                      finished.scene->background.video.string(),
                                      finished.scene->background.first_frame);
   truth.width = finished.truth.lens.width;
   truth.height = finished.truth.lens.height;
   truth.lens = lens::lens_of(finished.truth.lens);
-  truth.weather = scene::weather_facts(*finished.scene);
   truth.weight = record.maybe_number("weight");
   if (truth.weight && *truth.weight < 0) record.fail("weight", "a number from 0 on");
   for (const annotation::Frame& frame : finished.truth.frames)
@@ -409,6 +396,8 @@ SetTruth set_truth(const fs::path& folder, const std::string& volume, fs::path i
     expected.distractors = std::move(facts.distractors);
     weighted += truth.weight ? 1 : 0;
     truth.name = name;
+    truth.background = std::move(facts.background_name);
+    truth.weather = std::move(facts.weather);
     truth.sha256 = set.sha256_of(name);
     start_at_0(truth);
     truth.duration_s = duration_s(truth);
