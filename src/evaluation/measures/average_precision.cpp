@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include <airtruth/average_precision.h>
@@ -217,33 +218,28 @@ std::vector<PrecisionCurve> drawn_curves(const Ranking& ranking) {
   return curves;
 }
 
-struct Curves {
-  std::optional<PrecisionCurve> curve;
-  std::optional<PrecisionBand> band;
-  std::optional<Interval> interval;
-};
-
-Curves curves_of(std::span<const ImageList> sequences, Likeness likeness, double threshold) {
+// The curve, its band, and the interval of its mean.
+std::tuple<std::optional<PrecisionCurve>, std::optional<PrecisionBand>, std::optional<Interval>>
+curves_of(std::span<const ImageList> sequences, Likeness likeness, double threshold) {
   const Ranking ranking = ranking_of(sequences, {likeness, threshold, kAllAreas, 100});
-  Curves result;
-  result.curve = curve_of(ranking);
+  const std::optional<PrecisionCurve> curve = curve_of(ranking);
   const std::vector<PrecisionCurve> drawn =
-      result.curve ? drawn_curves(ranking) : std::vector<PrecisionCurve>{};
-  if (drawn.size() < 2) return result;
+      curve ? drawn_curves(ranking) : std::vector<PrecisionCurve>{};
+  if (drawn.size() < 2) return {curve, {}, {}};
   std::vector<double> values(drawn.size());
   std::ranges::transform(
       drawn, values.begin(), std::identity(), &PrecisionCurve::average_precision);
-  result.interval = statistics::percentile_interval(values);
-  result.band.emplace();
+  const Interval interval = statistics::percentile_interval(values);
+  PrecisionBand band;
   for (std::size_t i = 0; i < kRecallSteps; ++i) {
     std::transform(drawn.begin(), drawn.end(), values.begin(), [i](const PrecisionCurve& curve) {
       return curve.precision[i];
     });
     const Interval limits = statistics::percentile_interval(values);
-    result.band->low[i] = limits.low;
-    result.band->high[i] = limits.high;
+    band.low[i] = limits.low;
+    band.high[i] = limits.high;
   }
-  return result;
+  return {curve, band, interval};
 }
 
 }  // namespace
@@ -273,15 +269,11 @@ AveragePrecision average_precision(std::span<const std::vector<ScoredImage>> seq
   const MeanScores large = means_of(lists, kLarge, 100);
   result.ap_large = large.precision;
   result.ar_large = large.recall;
-  Curves overlap = curves_of(lists, Likeness::kOverlap, 0.5);
-  result.curve_50 = overlap.curve;
-  result.band_50 = overlap.band;
-  result.ap_50_interval = overlap.interval;
-  Curves centre = curves_of(lists, Likeness::kCentre, centre_px);
-  if (centre.curve) result.ap_centre = centre.curve->average_precision;
-  result.curve_centre = centre.curve;
-  result.band_centre = centre.band;
-  result.ap_centre_interval = centre.interval;
+  std::tie(result.curve_50, result.band_50, result.ap_50_interval) =
+      curves_of(lists, Likeness::kOverlap, 0.5);
+  std::tie(result.curve_centre, result.band_centre, result.ap_centre_interval) =
+      curves_of(lists, Likeness::kCentre, centre_px);
+  if (result.curve_centre) result.ap_centre = result.curve_centre->average_precision;
   return result;
 }
 
