@@ -52,37 +52,6 @@ std::vector<evaluation::ScoredImage> images_of(const TruthSequence& truth,
   return images;
 }
 
-// `sequence` is the number that the sightings and samples get.
-std::vector<AircraftInFrame> sightings_of(std::size_t sequence,
-                                          const TruthSequence& truth,
-                                          const ScoredDetections& scored,
-                                          double score) {
-  std::vector<AircraftInFrame> sightings;
-  each_aircraft(truth, scored, [&](std::size_t i, std::size_t k, const results::Detection* best) {
-    sightings.push_back({sequence, i, k, best != nullptr && best->score >= score});
-  });
-  return sightings;
-}
-
-// Of the detection of the highest score that finds the aircraft, in each frame. Empty without a
-// lens.
-std::vector<measures::BearingSample> bearing_samples_of(std::size_t sequence,
-                                                        const TruthSequence& truth,
-                                                        const ScoredDetections& scored,
-                                                        double score) {
-  std::vector<measures::BearingSample> samples;
-  if (!truth.lens) return samples;
-  each_aircraft(truth, scored, [&](std::size_t i, std::size_t k, const results::Detection* best) {
-    if (best == nullptr || best->score < score) return;
-    auto sample = sample_of(*truth.lens, truth.frames[i].objects[k], best->box_px);
-    if (!sample) return;
-    sample->sequence = sequence;
-    sample->time_s = truth.frames[i].time_s;
-    samples.push_back(*sample);
-  });
-  return samples;
-}
-
 // Aircraft, birds, multirotors and balloons are objects, the latter three without a range, as in
 // the challenge's truth. Ignored detections are left out.
 evaluation::AotFlight aot_flight_of(const TruthSequence& truth, const ScoredDetections& scored) {
@@ -132,6 +101,8 @@ class Scoring {
     for (ScoredDetections& scored : result_.sequences) {
       scored.matches = matches_of(scored.detections, truth(scored), options.centre_px);
       hours_ += truth(scored).duration_s / evaluation::kSecondsPerHour;
+      if (options.is_weighted) weights_.push_back(truth(scored).weight.value_or(1));
+      backgrounds_.push_back(truth(scored).background_cut);
       for (const auto& frame : scored.detections.frames)
         for (const results::Detection& detection : frame) {
           ++result_.detections;
@@ -206,7 +177,7 @@ class Scoring {
         hours_ > 0 ? static_cast<double>(tracks.false_tracks) / hours_ : 0;
     tracks.declarations = summarised(tracks.encounters, {});
     if (options_.is_weighted)
-      tracks.weighted_declarations = summarised(tracks.encounters, weights_of_sequences());
+      tracks.weighted_declarations = summarised(tracks.encounters, weights_);
     tracks.operating_curve = operating_curve(result_.sequences, truths_);
   }
 
@@ -216,37 +187,29 @@ class Scoring {
     for (std::size_t i = 0; i < result_.sequences.size(); ++i) {
       const ScoredDetections& scored = result_.sequences[i];
       const TruthSequence& of = truth(scored);
-      append(sightings, sightings_of(i, of, scored, score));
-      append(samples, bearing_samples_of(i, of, scored, score));
+      each_aircraft(of, scored, [&](std::size_t f, std::size_t k, const results::Detection* best) {
+        const bool is_found = best != nullptr && best->score >= score;
+        sightings.push_back({i, f, k, is_found});
+        if (!is_found || !of.lens) return;
+        auto sample = sample_of(*of.lens, of.frames[f].objects[k], best->box_px);
+        if (!sample) return;
+        sample->sequence = i;
+        sample->time_s = of.frames[f].time_s;
+        samples.push_back(*sample);
+      });
       append(result_.false_alarms, false_alarms_of(i, of, scored, score));
       append(result_.misses, misses_of(i, of, scored, score));
     }
     result_.bearing = measures::bearing_error(samples);
-    const std::vector<double> weights =
-        options_.is_weighted ? weights_of_sequences() : std::vector<double>{};
-    if (!weights.empty()) {
+    if (!weights_.empty()) {
       statistics::TrialsBySequence trials;
       for (const AircraftInFrame& one : sightings) trials.add(one.sequence, one.is_detected);
-      result_.weighted_detection = trials.proportion(weights);
+      result_.weighted_detection = trials.proportion(weights_);
     }
-    result_.false_alarms = strongest(std::move(result_.false_alarms), backgrounds());
+    result_.false_alarms = strongest(std::move(result_.false_alarms), backgrounds_);
     result_.misses = easiest(std::move(result_.misses));
-    break_down(sightings, weights);
+    break_down(sightings);
     count_false_alarms(score);
-  }
-
-  std::vector<double> weights_of_sequences() const {
-    std::vector<double> weights;
-    for (const ScoredDetections& scored : result_.sequences)
-      weights.push_back(truth(scored).weight.value_or(1));
-    return weights;
-  }
-
-  std::vector<std::string> backgrounds() const {
-    std::vector<std::string> names;
-    for (const ScoredDetections& scored : result_.sequences)
-      names.push_back(truth(scored).background_cut);
-    return names;
   }
 
   template <typename T>
@@ -254,14 +217,14 @@ class Scoring {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
   }
 
-  void break_down(const std::vector<AircraftInFrame>& sightings, std::span<const double> weights) {
+  void break_down(const std::vector<AircraftInFrame>& sightings) {
     for (const Quantity& quantity : quantities()) {
       std::vector<std::optional<Place>> places;
       for (const AircraftInFrame& sighting : sightings) {
         const TruthSequence& of = truth(result_.sequences[sighting.sequence]);
         places.push_back(quantity.place_of(of, of.frames[sighting.frame].objects[sighting.object]));
       }
-      std::vector<DetectionBin> bins = detection_by(sightings, places, weights);
+      std::vector<DetectionBin> bins = detection_by(sightings, places, weights_);
       if (!bins.empty()) result_.by[quantity.key] = std::move(bins);
     }
   }
@@ -296,6 +259,9 @@ class Scoring {
   std::span<const TruthSequence> truths_;
   const ScoreOptions& options_;
   double hours_ = 0;
+  // Of the sequences, as `weighted` measures take them; empty: they have none.
+  std::vector<double> weights_;
+  std::vector<std::string> backgrounds_;
   bool has_tracks_;
 };
 
