@@ -15,6 +15,7 @@
 
 #include "evaluation/detector_evaluation/plots.h"
 #include "evaluation/detector_evaluation/tables.h"
+#include "evaluation/report/tables.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/or_null.h"
@@ -26,7 +27,8 @@
 namespace airtruth::detector_evaluation {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using report::Json;
+using report::list_of;
 
 // The pictures of a page. Empty films and cutouts: the sequence's video is not known.
 struct Film {
@@ -219,71 +221,51 @@ Json detections_in(const scores::ScoredDetections& scored, std::size_t frame) {
   return json;
 }
 
-Json objects_in(const scores::TruthFrame& frame) {
-  Json json = Json::array();
-  for (const scores::TruthObject& object : frame.objects)
-    json.push_back({{"id", object.id},
-                    {"class", object.object_class},
-                    {"counts", object.counts},
-                    {"box", box_json(object.box_px)},
-                    {"range_m", rounded(object.range_m, 0.1)},
-                    {"cnr", rounded(object.contrast_to_noise, 0.01)},
-                    {"to_closest_s", rounded(object.to_closest_approach_s, 0.01)}});
-  return json;
-}
-
-Json ignored_in(const scores::TruthFrame& frame) {
-  Json json = Json::array();
-  for (const Box& box : frame.ignored_px) json.push_back(box_json(box));
-  return json;
+Json object_json(const scores::TruthObject& object) {
+  return {{"id", object.id},
+          {"class", object.object_class},
+          {"counts", object.counts},
+          {"box", box_json(object.box_px)},
+          {"range_m", rounded(object.range_m, 0.1)},
+          {"cnr", rounded(object.contrast_to_noise, 0.01)},
+          {"to_closest_s", rounded(object.to_closest_approach_s, 0.01)}};
 }
 
 Json cutout_json(const drawing::Cutout& cutout) {
   return cutout.jpeg.empty() ? Json() : Json{cutout.x, cutout.y, cutout.px};
 }
 
-Json stills_json(const scores::TruthSequence& truth, const std::vector<drawing::Still>& film) {
-  Json stills = Json::array();
-  for (const drawing::Still& still : film) {
-    const scores::TruthFrame& frame = truth.frames[still.index];
-    stills.push_back({{"index", still.index},
-                      {"frame", frame.frame},
-                      {"time_s", truth.has_times ? Json(rounded(frame.time_s, 0.001)) : Json()},
-                      {"close", cutout_json(still.close)},
-                      {"objects", objects_in(frame)},
-                      {"ignored", ignored_in(frame)}});
-  }
-  return stills;
+Json still_json(const scores::TruthSequence& truth, const drawing::Still& still) {
+  const scores::TruthFrame& frame = truth.frames[still.index];
+  return {{"index", still.index},
+          {"frame", frame.frame},
+          {"time_s", truth.has_times ? Json(rounded(frame.time_s, 0.001)) : Json()},
+          {"close", cutout_json(still.close)},
+          {"objects", list_of(frame.objects, object_json)},
+          {"ignored", list_of(frame.ignored_px, box_json)}};
 }
 
-Json encounters_json(const scores::TruthSequence& truth) {
-  Json json = Json::array();
-  for (const scores::TruthEncounter& one : truth.encounters)
-    json.push_back({{"id", one.id},
-                    {"name", one.name},
-                    {"closest_s", rounded(one.closest_approach_s, 0.001)},
-                    {"closest_m", rounded(one.closest_approach_m, 0.01)},
-                    {"violation_s", rounded(one.violation_s, 0.001)}});
-  return json;
+Json encounter_json(const scores::TruthEncounter& one) {
+  return {{"id", one.id},
+          {"name", one.name},
+          {"closest_s", rounded(one.closest_approach_s, 0.001)},
+          {"closest_m", rounded(one.closest_approach_m, 0.01)},
+          {"violation_s", rounded(one.violation_s, 0.001)}};
 }
 
 Json sequence_json(const scores::Assessment& assessment, const Film& film, std::size_t index) {
   const scores::TruthSequence& truth = assessment.truths[index];
   const std::vector<drawing::Still>& stills = film.sequences[index];
-  Json frame_numbers = Json::array();
-  for (const scores::TruthFrame& frame : truth.frames) frame_numbers.push_back(frame.frame);
   Json detectors = Json::array();
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
     const scores::DetectorScore& detector = assessment.detectors[k];
     for (const scores::ScoredDetections& scored : detector.sequences) {
       if (scored.truth != index) continue;
-      Json drawn = Json::array();
-      for (const drawing::Still& still : stills)
-        drawn.push_back(detections_in(scored, still.index));
+      const auto drawn = [&](const auto& still) { return detections_in(scored, still.index); };
       detectors.push_back({{"detector", k},
                            {"found", found_letters(truth, scored, detector.point.score)},
                            {"false_alarms", false_alarm_frames(scored, detector.point.score)},
-                           {"drawn", drawn}});
+                           {"drawn", list_of(stills, drawn)}});
     }
   }
   return {{"name", truth.name},
@@ -291,9 +273,9 @@ Json sequence_json(const scores::Assessment& assessment, const Film& film, std::
           {"width", std::max(1, truth.width)},
           {"height", std::max(1, truth.height)},
           {"weight", truth.weight.value_or(1)},
-          {"frame", frame_numbers},
-          {"encounters", encounters_json(truth)},
-          {"stills", stills_json(truth, stills)},
+          {"frame", list_of(truth.frames, std::mem_fn(&scores::TruthFrame::frame))},
+          {"encounters", list_of(truth.encounters, encounter_json)},
+          {"stills", list_of(stills, [&](const auto& one) { return still_json(truth, one); })},
           {"detectors", detectors}};
 }
 

@@ -14,6 +14,7 @@ namespace {
 
 using report::Json;
 using report::json_of;
+using report::list_of;
 
 Json json_of(const std::optional<evaluation::PrecisionCurve>& curve,
              const std::optional<evaluation::PrecisionBand>& band) {
@@ -98,14 +99,12 @@ Json json_of(const evaluation::FrocPoint& point, bool has_hours) {
 }
 
 Json json_of(const evaluation::Froc& froc) {
-  Json json = {{"images", froc.images},
-               {"flights", froc.flights},
-               {"hours", froc.hours > 0 ? Json(froc.hours) : Json()},
-               {"aircraft_in_images", froc.aircraft},
-               {"points", Json::array()}};
-  for (const evaluation::FrocPoint& point : froc.points)
-    json["points"].push_back(json_of(point, froc.hours > 0));
-  return json;
+  const auto point = [&](const auto& one) { return json_of(one, froc.hours > 0); };
+  return {{"images", froc.images},
+          {"flights", froc.flights},
+          {"hours", froc.hours > 0 ? Json(froc.hours) : Json()},
+          {"aircraft_in_images", froc.aircraft},
+          {"points", list_of(froc.points, point)}};
 }
 
 Json json_of(const scores::DetectionBin& bin) {
@@ -238,21 +237,18 @@ Json tracks_json_of(const scores::DetectorScore& detector, const scores::Assessm
   if (!detector.tracks) return {};
   const scores::TrackScores& tracks = *detector.tracks;
   const bool has_hours = detector.froc.hours > 0;
-  Json json = {{"hota", json_of(tracks.hota)},
-               {"clear", json_of(tracks.clear)},
-               {"identity", json_of(tracks.identity)},
-               {"false_tracks", tracks.false_tracks},
-               {"false_tracks_per_hour", has_hours ? Json(tracks.false_tracks_per_hour) : Json()},
-               {"declarations", json_of(tracks.declarations)},
-               {"weighted_declarations",
-                tracks.weighted_declarations ? json_of(*tracks.weighted_declarations) : Json()},
-               {"encounters", Json::array()},
-               {"operating_curve", Json::array()}};
-  for (const scores::EncounterScore& one : tracks.encounters)
-    json["encounters"].push_back(json_of(one, detector, assessment));
-  for (const scores::OperatingPoint& point : tracks.operating_curve)
-    json["operating_curve"].push_back(json_of(point, has_hours));
-  return json;
+  const auto encounter = [&](const auto& one) { return json_of(one, detector, assessment); };
+  const auto point = [&](const auto& one) { return json_of(one, has_hours); };
+  return {{"hota", json_of(tracks.hota)},
+          {"clear", json_of(tracks.clear)},
+          {"identity", json_of(tracks.identity)},
+          {"false_tracks", tracks.false_tracks},
+          {"false_tracks_per_hour", has_hours ? Json(tracks.false_tracks_per_hour) : Json()},
+          {"declarations", json_of(tracks.declarations)},
+          {"weighted_declarations",
+           tracks.weighted_declarations ? json_of(*tracks.weighted_declarations) : Json()},
+          {"encounters", list_of(tracks.encounters, encounter)},
+          {"operating_curve", list_of(tracks.operating_curve, point)}};
 }
 
 Json json_of(const scores::FalseAlarm& alarm,
@@ -292,6 +288,7 @@ Json json_of_detector(const scores::DetectorScore& detector, const scores::Asses
   const auto aot = [&](const std::optional<evaluation::AotScore>& score) {
     return score ? json_of(*score, has_hours) : Json();
   };
+  const auto entry = [&](const auto& one) { return json_of(one, detector, assessment); };
   Json json = {{"name", detector.name},
                {"sequences", detector.sequences.size()},
                {"detections", detector.detections},
@@ -307,19 +304,13 @@ Json json_of_detector(const scores::DetectorScore& detector, const scores::Asses
                {"aot_at_hfar_0.5", has_hours ? aot(detector.aot_ranks.by_hfar) : Json()},
                {"aot_at_fppi_0.0005", aot(detector.aot_ranks.by_fppi)},
                {"tracks", tracks_json_of(detector, assessment)},
-               {"strongest_false_alarms", Json::array()},
-               {"misses", Json::array()}};
+               {"strongest_false_alarms", list_of(detector.false_alarms, entry)},
+               {"misses", list_of(detector.misses, entry)}};
   json["point"]["weighted_detection"] =
       detector.weighted_detection ? json_of(*detector.weighted_detection) : Json();
-  for (const auto& [key, bins] : detector.by) {
-    json["by"][key] = Json::array();
-    for (const scores::DetectionBin& bin : bins) json["by"][key].push_back(json_of(bin));
-  }
+  for (const auto& [key, bins] : detector.by)
+    json["by"][key] = list_of(bins, [](const auto& bin) { return json_of(bin); });
   for (const auto& [what, share] : detector.mistaken_by) json["mistaken_by"][what] = json_of(share);
-  for (const scores::FalseAlarm& alarm : detector.false_alarms)
-    json["strongest_false_alarms"].push_back(json_of(alarm, detector, assessment));
-  for (const scores::Miss& miss : detector.misses)
-    json["misses"].push_back(json_of(miss, detector, assessment));
   return json;
 }
 

@@ -20,6 +20,13 @@ namespace airtruth::report {
 
 using Json = nlohmann::ordered_json;
 
+// The list of what `of` makes of each.
+Json list_of(const auto& all, const auto& of) {
+  Json list = Json::array();
+  for (const auto& one : all) list.push_back(of(one));
+  return list;
+}
+
 // [low, high], or null.
 Json json_of(const std::optional<evaluation::Interval>& interval);
 

@@ -14,6 +14,7 @@
 
 #include "evaluation/matching/boxes.h"
 #include "evaluation/report/plots.h"
+#include "evaluation/report/tables.h"
 #include "evaluation/statistics/bins.h"
 #include "evaluation/tracker_evaluation/tables.h"
 #include "foundation/base/files.h"
@@ -183,7 +184,8 @@ std::vector<Plot> sequence_plots(const Assessment& assessment, std::size_t index
   return plots;
 }
 
-using Json = nlohmann::ordered_json;
+using report::Json;
+using report::list_of;
 
 // Boxes on the page, of all sequences and trackers together: 25 bytes each.
 constexpr std::size_t kMaxBoxes = 1'000'000;
@@ -225,24 +227,17 @@ Json tracker_json(const ScoredSequence& sequence,
   Json json = {{"tracker", tracker}};
   for (const char* key : {"auc", "precision_20px", "angle_mrad", "first_loss"})
     json[key] = facts.at(key);
-  Json boxes = Json::array();
-  for (const std::size_t i : shown) boxes.push_back(box_json(sequence.answers[i]));
-  json["boxes"] = boxes;
+  json["boxes"] = list_of(shown, [&](std::size_t i) { return box_json(sequence.answers[i]); });
   return json;
 }
 
 Json sequence_json(const Assessment& assessment, std::size_t index, std::size_t step) {
   const TruthClip& truth = assessment.truths[index];
   const std::vector<std::size_t> shown = shown_frames(truth, step);
-  Json frame = Json::array();
-  Json range = Json::array();
-  Json boxes = Json::array();
-  for (const std::size_t i : shown) {
-    frame.push_back(truth.clip.frames[i].frame);
+  const auto range = [&](std::size_t i) {
     const std::optional<double> range_m = truth.range_m(i);
-    range.push_back(range_m ? Json(short_of(*range_m)) : Json());
-    boxes.push_back(box_json(truth.box(i)));
-  }
+    return range_m ? Json(short_of(*range_m)) : Json();
+  };
   Json trackers = Json::array();
   for (std::size_t k = 0; k < assessment.trackers.size(); ++k)
     for (const ScoredSequence& sequence : assessment.trackers[k].sequences)
@@ -253,9 +248,9 @@ Json sequence_json(const Assessment& assessment, std::size_t index, std::size_t 
           {"frames", truth.clip.frames.size()},
           {"width", std::max(1, truth.clip.width)},
           {"height", std::max(1, truth.clip.height)},
-          {"frame", frame},
-          {"range_m", range},
-          {"truth", boxes},
+          {"frame", list_of(shown, [&](std::size_t i) { return truth.clip.frames[i].frame; })},
+          {"range_m", list_of(shown, range)},
+          {"truth", list_of(shown, [&](std::size_t i) { return box_json(truth.box(i)); })},
           {"stills", stills_json(truth, shown)},
           {"trackers", trackers}};
 }
@@ -321,10 +316,9 @@ void write_page(const Assessment& assessment, const fs::path& out) {
                {"eao_range", {assessment.eao_range.first, assessment.eao_range.second}},
                {"plots", report::json_of(evaluation_plots(assessment))},
                {"trackers", trackers_json(assessment)},
-               {"comparisons", Json::array()},
+               {"comparisons",
+                list_of(assessment.comparisons, [](const auto& one) { return json_of(one); })},
                {"sequences", Json::array()}};
-  for (const TrackerPair& comparison : assessment.comparisons)
-    data["comparisons"].push_back(json_of(comparison));
   for (std::size_t i = 0; i < assessment.truths.size(); ++i)
     data["sequences"].push_back(sequence_json(assessment, i, step));
   write_file(out / "report.html",

@@ -13,6 +13,7 @@ namespace {
 using evaluation::Score;
 using measures::Bin;
 using report::Json;
+using report::list_of;
 
 // The format of numbers in CSV: all their digits.
 constexpr const char* kNumber = "{}";
@@ -64,14 +65,12 @@ Json breakdown_of(const ScoredTracker& tracker) {
   Json json = Json::object();
   for (const auto& [key, bins] : tracker.bins) {
     if (key == kBackground) continue;
-    Json list = Json::array();
-    for (const Bin& bin : bins) {
+    json[key] = list_of(bins, [](const Bin& bin) {
       // The last one's end is infinity, which is written as null.
       Json one = {{"from", bin.place.from}, {"to", bin.place.to}};
       one.update(json_of(bin));
-      list.push_back(one);
-    }
-    json[key] = list;
+      return one;
+    });
   }
   Json backgrounds = Json::object();
   // A tracker that has VOT's runs alone has no bins.
@@ -184,16 +183,13 @@ void write_tables(const Assessment& assessment, const fs::path& out) {
               {"speed_until_loss", assessment.until_loss},
               {"where", assessment.where},
               {"trackers", Json::array()},
-              {"comparisons", Json::array()}};
+              {"comparisons",
+               list_of(assessment.comparisons, [](const auto& one) { return json_of(one); })}};
   for (const ScoredTracker& tracker : assessment.trackers) {
     Json json = json_of(tracker);
-    json["sequences"] = Json::array();
-    for (const ScoredSequence& sequence : tracker.sequences)
-      json["sequences"].push_back(json_of(sequence));
+    json["sequences"] = list_of(tracker.sequences, [](const auto& one) { return json_of(one); });
     all["trackers"].push_back(json);
   }
-  for (const TrackerPair& comparison : assessment.comparisons)
-    all["comparisons"].push_back(json_of(comparison));
   report::write_files(out,
                       {{"trackers.csv", trackers_csv(assessment)},
                        {"sequences.csv", sequences_csv(assessment)},
