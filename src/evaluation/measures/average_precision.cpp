@@ -119,14 +119,14 @@ Ranking ranking_of(std::span<const ImageList> sequences, const PrecisionOptions&
   return ranking;
 }
 
-// The curve with each sequence counted as often as its weight says. The weighted number of truths
-// is above 0. Precision is needed at true positives alone: between them it only falls, and recall
-// stays.
-PrecisionCurve curve_of(const Ranking& ranking, std::span<const double> weights) {
-  PrecisionCurve curve;
+// The curve with each sequence counted as often as its weight says; empty without a truth.
+// Precision is needed at true positives alone: between them it only falls, and recall stays.
+std::optional<PrecisionCurve> curve_of(const Ranking& ranking, std::span<const double> weights) {
   double truths = 0;
   for (std::size_t s = 0; s < weights.size(); ++s)
     truths += weights[s] * static_cast<double>(ranking.truths[s]);
+  if (!(truths > 0)) return std::nullopt;
+  PrecisionCurve curve;
   curve.truths = static_cast<std::int64_t>(truths);
   struct Point {
     double recall, precision, score;
@@ -162,11 +162,8 @@ PrecisionCurve curve_of(const Ranking& ranking, std::span<const double> weights)
   return curve;
 }
 
-// The same with all weights 1; empty without a truth.
+// The same with all weights 1.
 std::optional<PrecisionCurve> curve_of(const Ranking& ranking) {
-  const std::int64_t truths =
-      std::accumulate(ranking.truths.begin(), ranking.truths.end(), std::int64_t{0});
-  if (truths == 0) return std::nullopt;
   return curve_of(ranking, std::vector<double>(ranking.truths.size(), 1.0));
 }
 
@@ -208,13 +205,8 @@ std::vector<PrecisionCurve> drawn_curves(const Ranking& ranking) {
   if (sequences < 2) return curves;
   const std::size_t draws = statistics::draws_for(ranking.detections.size());
   statistics::ClusterDraws drawn(sequences, "average precision");
-  for (std::size_t draw = 0; draw < draws; ++draw) {
-    const std::span<const double> counts = drawn.next();
-    double truths = 0;
-    for (std::size_t i = 0; i < sequences; ++i)
-      truths += counts[i] * static_cast<double>(ranking.truths[i]);
-    if (truths > 0) curves.push_back(curve_of(ranking, counts));
-  }
+  for (std::size_t draw = 0; draw < draws; ++draw)
+    if (const auto curve = curve_of(ranking, drawn.next())) curves.push_back(*curve);
   return curves;
 }
 
