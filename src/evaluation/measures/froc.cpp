@@ -36,13 +36,20 @@ struct Sorted {
   }
 };
 
-class Counts {
- public:
-  explicit Counts(std::span<const FrocSequence> sequences) : all_(sequences) {
-    for (const FrocSequence& sequence : sequences) {
-      sequences_.emplace_back(std::span(&sequence, 1));
-      images_ += static_cast<double>(sequence.images);
-      hours_ += sequence.duration_s / kSecondsPerHour;
+// 0 where there is nothing to count by.
+double per(double count, double of) { return of > 0 ? count / of : 0; }
+
+struct Counts {
+  Sorted all;
+  std::vector<Sorted> sequences;
+  double images = 0;
+  double hours = 0;
+
+  explicit Counts(std::span<const FrocSequence> of) : all(of) {
+    for (const FrocSequence& sequence : of) {
+      sequences.emplace_back(std::span(&sequence, 1));
+      images += static_cast<double>(sequence.images);
+      hours += sequence.duration_s / kSecondsPerHour;
     }
   }
 
@@ -50,38 +57,25 @@ class Counts {
     FrocPoint point;
     point.score = score;
     std::vector<statistics::Cluster> clusters;
-    for (const Sorted& sequence : sequences_)
+    for (const Sorted& sequence : sequences)
       clusters.push_back({count_at(sequence.found, score), sequence.trials});
     point.detection = statistics::proportion_of(clusters);
     const double alarms = false_alarms_at(score);
-    const auto rate = [&](double per) { return per > 0 ? alarms / per : 0; };
-    point.false_alarms_per_image = false_alarms_per_image_at(score);
-    point.false_alarms_per_hour = rate(hours_);
-    point.false_alarms_per_flight = rate(static_cast<double>(sequences_.size()));
+    point.false_alarms_per_image = per(alarms, images);
+    point.false_alarms_per_hour = per(alarms, hours);
+    point.false_alarms_per_flight = per(alarms, static_cast<double>(sequences.size()));
     return point;
   }
 
   // All scores that occur, falling.
   std::vector<double> scores() const {
     std::vector<double> scores;
-    std::ranges::merge(all_.found, all_.false_alarms, std::back_inserter(scores), std::greater<>());
+    std::ranges::merge(all.found, all.false_alarms, std::back_inserter(scores), std::greater<>());
     scores.erase(std::unique(scores.begin(), scores.end()), scores.end());
     return scores;
   }
-  double false_alarms_at(double score) const { return count_at(all_.false_alarms, score); }
-  double false_alarms_per_image_at(double score) const {
-    return images_ > 0 ? false_alarms_at(score) / images_ : 0;
-  }
-  double found_share_at(double score) const {
-    return all_.trials > 0 ? count_at(all_.found, score) / all_.trials : 0;
-  }
-  double hours() const { return hours_; }
-
- private:
-  Sorted all_;
-  std::vector<Sorted> sequences_;
-  double images_ = 0;
-  double hours_ = 0;
+  double false_alarms_at(double score) const { return count_at(all.false_alarms, score); }
+  double found_share_at(double score) const { return per(count_at(all.found, score), all.trials); }
 };
 
 // The scores at which the curve has moved on by a step: of log10 of the false alarms, or of the
@@ -114,12 +108,10 @@ std::vector<double> thinned(const Counts& counts, std::size_t most) {
 Froc froc_of(std::span<const FrocSequence> sequences, std::size_t most) {
   const Counts counts(sequences);
   Froc froc;
-  for (const FrocSequence& sequence : sequences) {
-    froc.images += sequence.images;
-    froc.aircraft += std::ssize(sequence.best_scores);
-  }
+  froc.images = static_cast<std::int64_t>(counts.images);
   froc.flights = std::ssize(sequences);
-  froc.hours = counts.hours();
+  froc.hours = counts.hours;
+  froc.aircraft = static_cast<std::int64_t>(counts.all.trials);
   for (const double score : thinned(counts, most)) froc.points.push_back(counts.at(score));
   return froc;
 }
@@ -134,7 +126,7 @@ std::optional<double> score_at_false_alarms(std::span<const FrocSequence> sequen
   const std::vector<double> scores = counts.scores();
   // False alarms grow as the score falls.
   const auto beyond = std::partition_point(scores.begin(), scores.end(), [&](double score) {
-    return counts.false_alarms_per_image_at(score) <= per_image;
+    return per(counts.false_alarms_at(score), counts.images) <= per_image;
   });
   if (beyond == scores.begin()) return std::nullopt;
   return *std::prev(beyond);
