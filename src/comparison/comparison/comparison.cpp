@@ -122,14 +122,6 @@ Crop crop_of(const image::Picture& picture, const Box& box, int side) {
           {box.x - x, box.y - y, box.width, box.height}};
 }
 
-image::Rgb8 tile_of(const image::Rgb8& crop, int side) {
-  return drawing::resized(crop, side, side, crop.width > side ? cv::INTER_AREA : cv::INTER_NEAREST);
-}
-
-void paste(cv::Mat& canvas, image::Rgb8 picture, int x, int y) {
-  image::mat_of(picture).copyTo(canvas(cv::Rect(x, y, picture.width, picture.height)));
-}
-
 // Makes both crops of a pair with the same size: the larger box, with a margin of its own size
 // around it.
 FigureRow figure_row(const image::Picture& picture,
@@ -165,15 +157,15 @@ image::Rgb8 figure_of(const std::vector<FigureRow>& rows) {
                     kTextPx,
                     drawing::kWhite);
       // At 1x as much as there is room for, from the middle.
-      const int small = std::min(kSmallPx, one->picture.width);
-      const int from = (one->picture.width - small) / 2;
-      image::Rgb8 copy = tile_of(one->picture, one->picture.width);
-      image::mat_of(copy)(cv::Rect(from, from, small, small))
-          .copyTo(canvas(cv::Rect(x, y, small, small)));
+      const cv::Mat crop = image::mat_of(one->picture);
+      const int small = std::min(kSmallPx, crop.cols);
+      const int from = (crop.cols - small) / 2;
+      crop(cv::Rect(from, from, small, small)).copyTo(canvas(cv::Rect(x, y, small, small)));
       x += kSmallPx + kGapPx;
-      paste(canvas, tile_of(one->picture, kLargePx), x, y);
       cv::Mat large = canvas(cv::Rect(x, y, kLargePx, kLargePx));
-      drawing::outline(large, one->box, double(kLargePx) / one->picture.width, drawing::kGreen);
+      const int method = crop.cols > kLargePx ? cv::INTER_AREA : cv::INTER_NEAREST;
+      cv::resize(crop, large, large.size(), 0, 0, method);
+      drawing::outline(large, one->box, double(kLargePx) / crop.cols, drawing::kGreen);
       x += kLargePx + kGapPx;
     }
   }
@@ -182,11 +174,9 @@ image::Rgb8 figure_of(const std::vector<FigureRow>& rows) {
 
 // Both crops of a pair as they are: the real aircraft at the left, the inserted one at the right.
 image::Rgb8 patches_of(const FigureRow& row) {
-  const int side = row.real.picture.width;
-  cv::Mat canvas(side, 2 * side, CV_8UC3);
-  paste(canvas, tile_of(row.real.picture, side), 0, 0);
-  paste(canvas, tile_of(row.made.picture, side), side, 0);
-  return image::rgb8_of(canvas);
+  cv::Mat both;
+  cv::hconcat(image::mat_of(row.real.picture), image::mat_of(row.made.picture), both);
+  return image::rgb8_of(both);
 }
 
 class Comparing {
