@@ -16,17 +16,15 @@ constexpr std::size_t kBurnIn = 10;  // frames after a start without accuracy (V
 constexpr double kSensitivity =
     30;  // frames of the reliability exp(-S failures / frames) (VOT2014)
 
-double rounded(double value) { return std::nearbyint(value); }
-
 // A range of whole pixels from first to last, both included.
 struct Pixels {
   double left = 0, top = 0, right = 0, bottom = 0;
 };
 
 Pixels pixels(const Box& box) {
-  const double x = rounded(box.x);
-  const double y = rounded(box.y);
-  return {x, y, x + rounded(box.width) - 1, y + rounded(box.height) - 1};
+  const double x = std::nearbyint(box.x);
+  const double y = std::nearbyint(box.y);
+  return {x, y, x + std::nearbyint(box.width) - 1, y + std::nearbyint(box.height) - 1};
 }
 
 Pixels cut(const Pixels& a, const Pixels& b) {
@@ -95,13 +93,11 @@ struct Curve {
 };
 
 std::optional<double> mean_over(const std::vector<double>& curve, std::pair<int, int> range) {
-  double sum = 0;
-  int count = 0;
-  for (int j = std::max(0, range.first); j <= range.second && j < std::ssize(curve); ++j) {
-    sum += curve[static_cast<std::size_t>(j)];
-    ++count;
-  }
-  return count > 0 ? std::optional(sum / count) : std::nullopt;
+  const std::ptrdiff_t first = std::max(0, range.first);
+  const std::ptrdiff_t end = std::min(std::ptrdiff_t{range.second} + 1, std::ssize(curve));
+  if (first >= end) return std::nullopt;
+  const double sum = std::accumulate(curve.begin() + first, curve.begin() + end, 0.0);
+  return sum / static_cast<double>(end - first);
 }
 
 // The frames from a start to the one before a failure, or to the end.
@@ -144,21 +140,18 @@ std::vector<double> curve_of(const std::vector<Fragment>& fragments) {
 
 std::pair<double, std::int64_t> accuracy_and_failures(const Trajectory& run,
                                                       const std::vector<double>& overlaps) {
-  std::vector<bool> counts(run.size(), true);
   std::int64_t failures = 0;
-  for (std::size_t i = 0; i < run.size(); ++i) {
-    if (run[i].mark == Mark::kUnknown || run[i].mark == Mark::kFailed) counts[i] = false;
-    failures += run[i].mark == Mark::kFailed ? 1 : 0;
-    if (run[i].mark == Mark::kBegun)
-      for (std::size_t j = i; j < std::min(run.size(), i + kBurnIn); ++j) counts[j] = false;
-  }
   double sum = 0;
   std::int64_t n = 0;
-  for (std::size_t i = 0; i < run.size(); ++i)
-    if (counts[i]) {
-      sum += overlaps[i];
-      ++n;
-    }
+  std::size_t counts_from = 0;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    const Mark mark = run[i].mark;
+    failures += mark == Mark::kFailed ? 1 : 0;
+    if (mark == Mark::kBegun) counts_from = i + kBurnIn;
+    if (i < counts_from || mark == Mark::kUnknown || mark == Mark::kFailed) continue;
+    sum += overlaps[i];
+    ++n;
+  }
   return {n > 0 ? sum / static_cast<double>(n) : 0, failures};
 }
 
