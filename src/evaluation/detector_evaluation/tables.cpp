@@ -31,20 +31,15 @@ Json json_of(const std::optional<evaluation::PrecisionCurve>& curve,
 }
 
 Json json_of(const measures::Spread& spread) {
-  Json json = {{"mean", spread.mean},
-               {"deviation", spread.deviation},
-               {"rms", spread.rms},
-               {"within_95", spread.within_95},
-               {"count", spread.count}};
-  const auto& intervals = spread.intervals;
-  const auto bounds = [&](evaluation::Interval measures::Spread::Intervals::*of) {
-    return json_of(intervals ? std::optional((*intervals).*of) : std::nullopt);
-  };
-  json["mean_interval_95"] = bounds(&measures::Spread::Intervals::mean);
-  json["deviation_interval_95"] = bounds(&measures::Spread::Intervals::deviation);
-  json["rms_interval_95"] = bounds(&measures::Spread::Intervals::rms);
-  json["within_95_interval_95"] = bounds(&measures::Spread::Intervals::within_95);
-  return json;
+  return {{"mean", spread.mean},
+          {"deviation", spread.deviation},
+          {"rms", spread.rms},
+          {"within_95", spread.within_95},
+          {"count", spread.count},
+          {"mean_interval_95", json_of(spread.mean_interval)},
+          {"deviation_interval_95", json_of(spread.deviation_interval)},
+          {"rms_interval_95", json_of(spread.rms_interval)},
+          {"within_95_interval_95", json_of(spread.within_95_interval)}};
 }
 
 Json json_of(const evaluation::AotRate& rate) {

@@ -47,22 +47,21 @@ Spread spread_of(std::span<const Value> by_size, std::span<const double> counts)
   return spread;
 }
 
-std::optional<Spread::Intervals> intervals_of(std::span<const Value> by_size,
-                                              std::size_t sequences) {
-  if (sequences < 2) return std::nullopt;
-  std::vector<double> means, deviations, rms, within_95;
+void add_intervals(std::span<const Value> by_size, std::size_t sequences, Spread& spread) {
+  if (sequences < 2) return;
+  std::vector<Spread> drawn;
   statistics::ClusterDraws draws(sequences, "bearing");
-  for (std::size_t left = statistics::draws_for(2 * by_size.size()); left > 0; --left) {
-    const Spread drawn = spread_of(by_size, draws.next());
-    means.push_back(drawn.mean);
-    deviations.push_back(drawn.deviation);
-    rms.push_back(drawn.rms);
-    within_95.push_back(drawn.within_95);
-  }
-  return Spread::Intervals{statistics::percentile_interval(std::move(means)),
-                           statistics::percentile_interval(std::move(deviations)),
-                           statistics::percentile_interval(std::move(rms)),
-                           statistics::percentile_interval(std::move(within_95))};
+  for (std::size_t left = statistics::draws_for(2 * by_size.size()); left > 0; --left)
+    drawn.push_back(spread_of(by_size, draws.next()));
+  const auto interval_of = [&](double Spread::*member) {
+    std::vector<double> values;
+    for (const Spread& one : drawn) values.push_back(one.*member);
+    return statistics::percentile_interval(std::move(values));
+  };
+  spread.mean_interval = interval_of(&Spread::mean);
+  spread.deviation_interval = interval_of(&Spread::deviation);
+  spread.rms_interval = interval_of(&Spread::rms);
+  spread.within_95_interval = interval_of(&Spread::within_95);
 }
 
 // Numbers the sequences that have a value through.
@@ -72,7 +71,7 @@ Spread spread_of(std::vector<Value> values) {
     one.sequence = numbers.try_emplace(one.sequence, numbers.size()).first->second;
   std::ranges::stable_sort(values, {}, [](const Value& one) { return std::abs(one.value); });
   Spread spread = spread_of(values, std::vector<double>(numbers.size(), 1.0));
-  spread.intervals = intervals_of(values, numbers.size());
+  add_intervals(values, numbers.size(), spread);
   return spread;
 }
 

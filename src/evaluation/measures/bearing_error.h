@@ -36,10 +36,8 @@ struct Spread {
   std::int64_t count = 0;
   // 95 % intervals of the four by the percentile bootstrap over sequences (statistics/bootstrap.h);
   // empty where fewer than two sequences have a value.
-  struct Intervals {
-    evaluation::Interval mean, deviation, rms, within_95;
-  };
-  std::optional<Intervals> intervals;
+  std::optional<evaluation::Interval> mean_interval, deviation_interval;
+  std::optional<evaluation::Interval> rms_interval, within_95_interval;
 };
 
 struct BearingError {

@@ -44,14 +44,14 @@ TEST(BearingError, ARateNeedsASampleASecondBefore) {
 TEST(BearingError, TheIntervalOfTwoSequences) {
   const std::vector<BearingSample> samples = {{0, 1, 0, 1, 0}, {1, 1, 0, 4, 0}};
   const auto error = bearing_error(samples);
-  ASSERT_TRUE(error->azimuth.intervals);
-  EXPECT_NEAR(error->azimuth.intervals->mean.low, 1, 1e-12);
-  EXPECT_NEAR(error->azimuth.intervals->mean.high, 4, 1e-12);
-  EXPECT_NEAR(error->azimuth.intervals->deviation.low, 0, 1e-12);
-  EXPECT_NEAR(error->azimuth.intervals->deviation.high, 3 / std::sqrt(2), 1e-12);
-  EXPECT_NEAR(error->azimuth.intervals->within_95.low, 1, 1e-12);
-  EXPECT_NEAR(error->azimuth.intervals->within_95.high, 4, 1e-12);
-  EXPECT_FALSE(bearing_error(std::vector<BearingSample>{samples[0]})->azimuth.intervals);
+  ASSERT_TRUE(error->azimuth.mean_interval);
+  EXPECT_NEAR(error->azimuth.mean_interval->low, 1, 1e-12);
+  EXPECT_NEAR(error->azimuth.mean_interval->high, 4, 1e-12);
+  EXPECT_NEAR(error->azimuth.deviation_interval->low, 0, 1e-12);
+  EXPECT_NEAR(error->azimuth.deviation_interval->high, 3 / std::sqrt(2), 1e-12);
+  EXPECT_NEAR(error->azimuth.within_95_interval->low, 1, 1e-12);
+  EXPECT_NEAR(error->azimuth.within_95_interval->high, 4, 1e-12);
+  EXPECT_FALSE(bearing_error(std::vector<BearingSample>{samples[0]})->azimuth.mean_interval);
 }
 
 // Normal errors with a deviation of 2 mrad: the mean of n has the deviation 2 / sqrt(n), and the
@@ -73,12 +73,12 @@ TEST(BearingError, IntervalsAreThoseOfNormalErrors) {
     const auto error = bearing_error(samples);
     for (const Spread* spread : {&error->azimuth, &error->elevation}) {
       const auto half = [](const evaluation::Interval& one) { return (one.high - one.low) / 2; };
-      EXPECT_NEAR(half(spread->intervals->mean), z * 2 / std::sqrt(kSequences), 0.03);
-      EXPECT_NEAR(half(spread->intervals->deviation), z * 2 / std::sqrt(2 * kSequences), 0.025);
-      EXPECT_LT(spread->intervals->rms.low, spread->rms);
-      EXPECT_GT(spread->intervals->rms.high, spread->rms);
-      EXPECT_LT(spread->intervals->within_95.low, spread->within_95);
-      EXPECT_GT(spread->intervals->within_95.high, spread->within_95);
+      EXPECT_NEAR(half(*spread->mean_interval), z * 2 / std::sqrt(kSequences), 0.03);
+      EXPECT_NEAR(half(*spread->deviation_interval), z * 2 / std::sqrt(2 * kSequences), 0.025);
+      EXPECT_LT(spread->rms_interval->low, spread->rms);
+      EXPECT_GT(spread->rms_interval->high, spread->rms);
+      EXPECT_LT(spread->within_95_interval->low, spread->within_95);
+      EXPECT_GT(spread->within_95_interval->high, spread->within_95);
     }
   }
 }
@@ -91,9 +91,9 @@ TEST(BearingError, RatesHaveIntervalsToo) {
       samples.push_back({sequence, 1, double(second), second * (sequence == 0 ? 1.0 : 3.0), 0});
   const auto error = bearing_error(samples);
   ASSERT_TRUE(error->azimuth_rate);
-  ASSERT_TRUE(error->azimuth_rate->intervals);
-  EXPECT_NEAR(error->azimuth_rate->intervals->mean.low, 1, 1e-12);
-  EXPECT_NEAR(error->azimuth_rate->intervals->mean.high, 3, 1e-12);
+  ASSERT_TRUE(error->azimuth_rate->mean_interval);
+  EXPECT_NEAR(error->azimuth_rate->mean_interval->low, 1, 1e-12);
+  EXPECT_NEAR(error->azimuth_rate->mean_interval->high, 3, 1e-12);
 }
 
 }  // namespace
