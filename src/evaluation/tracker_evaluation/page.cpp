@@ -6,13 +6,11 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <span>
 
 #include <airtruth/version.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "evaluation/matching/boxes.h"
 #include "evaluation/report/plots.h"
 #include "evaluation/report/tables.h"
 #include "evaluation/statistics/bins.h"
@@ -37,15 +35,15 @@ Pixel centre_or_gap(const std::optional<Box>& box) {
   return box ? centre_of(*box) : Pixel(kGap, kGap);
 }
 
-Plot curve(const Assessment& assessment, const std::string& x, double step, const auto& of) {
+// `values`: the curve's member of Score.
+Plot curve(const Assessment& assessment, const std::string& x, double step, auto values) {
   Plot plot{.x = {.label = x}, .y = {.label = "share of frames", .min = 0, .max = 1}};
   for (std::size_t k = 0; k < assessment.trackers.size(); ++k) {
     const ScoredTracker& tracker = assessment.trackers[k];
     if (!tracker.overall) continue;
     Series series{.name = tracker.name, .style = plot::style_of(k)};
-    const std::span<const double> values = of(*tracker.overall);
-    for (std::size_t j = 0; j < values.size(); ++j)
-      series.add(static_cast<double>(j) * step, values[j]);
+    for (std::size_t j = 0; const double value : (*tracker.overall).*values)
+      series.add(static_cast<double>(j++) * step, value);
     plot.series.push_back(std::move(series));
   }
   return plot;
@@ -115,18 +113,9 @@ const ScoredSequence* scored_sequence(const Assessment& assessment,
 std::vector<report::NamedPlot> evaluation_plots(const Assessment& assessment) {
   using evaluation::Score;
   std::vector<report::NamedPlot> plots = {
-      {"success",
-       curve(assessment, "overlap", 0.05, [](const Score& s) { return std::span(s.success); })},
-      {"precision",
-       curve(assessment,
-             "centre error, px",
-             1,
-             [](const Score& s) { return std::span(s.precision); })},
-      {"normalised",
-       curve(assessment,
-             "centre error over size",
-             0.01,
-             [](const Score& s) { return std::span(s.normalised); })},
+      {"success", curve(assessment, "overlap", 0.05, &Score::success)},
+      {"precision", curve(assessment, "centre error, px", 1, &Score::precision)},
+      {"normalised", curve(assessment, "centre error over size", 0.01, &Score::normalised)},
       {"eao", eao_plot(assessment)},
       {"range_m", bins_plot(assessment, "range_m", "range, m")},
       {"size_px", bins_plot(assessment, "size_px", "box size (longer side), px")},
@@ -240,9 +229,8 @@ Json sequence_json(const Assessment& assessment, std::size_t index, std::size_t 
   };
   Json trackers = Json::array();
   for (std::size_t k = 0; k < assessment.trackers.size(); ++k)
-    for (const ScoredSequence& sequence : assessment.trackers[k].sequences)
-      if (sequence.truth == index && sequence.score)
-        trackers.push_back(tracker_json(sequence, k, shown));
+    if (const ScoredSequence* sequence = scored_sequence(assessment, k, index))
+      trackers.push_back(tracker_json(*sequence, k, shown));
   return {{"name", truth.clip.name},
           {"background", truth.background},
           {"frames", truth.clip.frames.size()},
