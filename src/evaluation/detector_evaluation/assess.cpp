@@ -213,7 +213,6 @@ bool holds_detections(const fs::path& results, bool is_mot_of_detector) {
   if (has_det || (json == 1 && texts.empty() && !has_folder)) return true;
   std::erase_if(texts,
                 [](const fs::path& file) { return file.stem().string().ends_with("_time"); });
-  std::sort(texts.begin(), texts.end());
   std::vector<Text> kinds;
   for (const fs::path& file : texts) kinds.push_back(text_of(file, is_mot_of_detector));
   // A detector that detects nothing leaves empty files; a tracker has a line for each frame.

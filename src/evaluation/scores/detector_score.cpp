@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation/scores/detector_score.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>

@@ -10,7 +10,6 @@
 #include <airtruth/statistics.h>
 #include <airtruth/vot.h>
 
-#include "evaluation/matching/boxes.h"
 #include "evaluation/measures/outcome.h"
 #include "evaluation/report/run_options.h"
 #include "evaluation/tracker_evaluation/truth.h"
