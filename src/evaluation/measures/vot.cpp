@@ -179,6 +179,23 @@ std::size_t progress_of(const std::vector<double>& overlaps,
   return overlaps.size();
 }
 
+// Adds a run with this progress to the curve of expected overlap, up to the length `high`.
+void add_run(const std::vector<double>& overlaps,
+             std::size_t progress,
+             std::size_t high,
+             Curve& curve) {
+  const bool failed = progress < overlaps.size();
+  double sum = 0;
+  for (std::size_t j = 1; j < high; ++j) {
+    if (j < overlaps.size()) {
+      if (j < progress) sum += overlaps[j];
+      curve.add(j, sum / static_cast<double>(j));
+    } else if (failed) {
+      curve.add(j, sum / static_cast<double>(std::max<std::size_t>(1, j - 1)));
+    }
+  }
+}
+
 }  // namespace
 
 double pixel_overlap(const Box& a, const Box& b, int width, int height) {
@@ -227,46 +244,6 @@ Restart restart_score(std::span<const RestartRuns> sequences, std::pair<int, int
   return score;
 }
 
-namespace {
-
-// Frames of the runs of one sequence: before the failures, and all.
-struct RunFrames {
-  double progress = 0;
-  double all = 0;
-};
-
-// Adds the runs of a sequence to the curve of expected overlap, up to the length `high`, and their
-// overlaps before the failures to `overlap`.
-RunFrames add_runs(const MultiStartRuns& sequence,
-                   std::size_t high,
-                   Curve& curve,
-                   double& overlap) {
-  RunFrames frames;
-  for (const AnchorRun& run : sequence.runs) {
-    const auto truth = truth_of(sequence.truth, run);
-    if (run.frames.size() != truth.size())
-      throw Error("a run is not as long as the sequence from its anchor");
-    const auto overlaps = overlaps_of(run.frames, truth, sequence.truth);
-    const std::size_t progress = progress_of(overlaps, truth);
-    const bool failed = progress < overlaps.size();
-    frames.progress += static_cast<double>(progress);
-    frames.all += static_cast<double>(overlaps.size());
-    double sum = 0;
-    for (std::size_t j = 0; j < progress; ++j) overlap += overlaps[j];
-    for (std::size_t j = 1; j < high; ++j) {
-      if (j < overlaps.size()) {
-        if (j < progress) sum += overlaps[j];
-        curve.add(j, sum / static_cast<double>(j));
-      } else if (failed) {
-        curve.add(j, sum / static_cast<double>(std::max<std::size_t>(1, j - 1)));
-      }
-    }
-  }
-  return frames;
-}
-
-}  // namespace
-
 MultiStart multistart_score(std::span<const MultiStartRuns> sequences,
                             std::pair<int, int> eao_range) {
   MultiStart score;
@@ -278,10 +255,22 @@ MultiStart multistart_score(std::span<const MultiStartRuns> sequences,
   const auto high = static_cast<std::size_t>(std::max(0, eao_range.second));
   for (const MultiStartRuns& sequence : sequences) {
     if (sequence.runs.empty()) continue;
-    const RunFrames runs = add_runs(sequence, high, curve, overlap);
-    before += runs.progress;
+    double progress_of_runs = 0;
+    double frames = 0;
+    for (const AnchorRun& run : sequence.runs) {
+      const auto truth = truth_of(sequence.truth, run);
+      if (run.frames.size() != truth.size())
+        throw Error("a run is not as long as the sequence from its anchor");
+      const auto overlaps = overlaps_of(run.frames, truth, sequence.truth);
+      const std::size_t progress = progress_of(overlaps, truth);
+      progress_of_runs += static_cast<double>(progress);
+      frames += static_cast<double>(overlaps.size());
+      for (std::size_t j = 0; j < progress; ++j) overlap += overlaps[j];
+      add_run(overlaps, progress, high, curve);
+    }
+    before += progress_of_runs;
     const double weight = static_cast<double>(sequence.truth.boxes.size());
-    robustness += runs.progress / runs.all * weight;
+    robustness += progress_of_runs / frames * weight;
     length += weight;
   }
   if (length == 0) return score;
