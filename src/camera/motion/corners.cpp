@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp>  // constants alone
 
 #include "camera/opencv_plugin/opencv_plugin.h"
 #include "foundation/image/mats.h"

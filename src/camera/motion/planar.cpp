@@ -2,7 +2,6 @@
 #include <cmath>
 #include <optional>
 
-#include <opencv2/calib3d.hpp>  // constants alone
 #include <opencv2/imgproc.hpp>
 
 #include "camera/motion/corners.h"

@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
+#include <opencv2/video/tracking.hpp>
 
 // Functions of OpenCV's modules calib3d, video and tracking. They stand in a library that is
 // loaded at the first call (foundation/lazy_library/lazy_library.h), because these modules need
-// more libraries, and more time to load, than all others of a render with known motion. The
-// parameters are OpenCV's, without default values.
-namespace cv {
-class Tracker;
-namespace legacy {
+// more libraries, and more time to load, than all others of a render with known motion. The headers
+// give types and constants alone. The parameters are OpenCV's, without default values.
+namespace cv::legacy {
 inline namespace tracking {
 class Tracker;
 }
-}  // namespace legacy
-}  // namespace cv
+}  // namespace cv::legacy
 
 namespace airtruth::opencv_plugin {
 
 struct Functions {
-  // calib3d
+  // calib3d; one of several functions of this name
   cv::Mat (*find_homography)(cv::InputArray from,
                              cv::InputArray to,
                              int method,
@@ -27,34 +26,10 @@ struct Functions {
                              cv::OutputArray mask,
                              int max_rounds,
                              double confidence);
-  cv::Mat (*estimate_affine_partial_2d)(cv::InputArray from,
-                                        cv::InputArray to,
-                                        cv::OutputArray inliers,
-                                        int method,
-                                        double ransac_px,
-                                        std::size_t max_rounds,
-                                        double confidence,
-                                        std::size_t refinements);
+  decltype(&cv::estimateAffinePartial2D) estimate_affine_partial_2d;
   // video
-  int (*build_optical_flow_pyramid)(cv::InputArray picture,
-                                    cv::OutputArrayOfArrays pyramid,
-                                    cv::Size window,
-                                    int max_level,
-                                    bool with_derivatives,
-                                    int border,
-                                    int border_of_derivatives,
-                                    bool reuses_picture);
-  void (*calc_optical_flow_pyr_lk)(cv::InputArray from,
-                                   cv::InputArray to,
-                                   cv::InputArray points,
-                                   cv::InputOutputArray moved,
-                                   cv::OutputArray status,
-                                   cv::OutputArray error,
-                                   cv::Size window,
-                                   int max_level,
-                                   cv::TermCriteria enough,
-                                   int flags,
-                                   double min_eigenvalue);
+  decltype(&cv::buildOpticalFlowPyramid) build_optical_flow_pyramid;
+  decltype(&cv::calcOpticalFlowPyrLK) calc_optical_flow_pyr_lk;
   // Trackers with their own defaults.
   cv::Ptr<cv::Tracker> (*mil)();
   cv::Ptr<cv::Tracker> (*kcf)();

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The library itself, airtruth-late-opencv.so.
-#include <opencv2/calib3d.hpp>
 #include <opencv2/tracking.hpp>
 #include <opencv2/tracking/tracking_legacy.hpp>
-#include <opencv2/video/tracking.hpp>
 
 #include "camera/opencv_plugin/opencv_plugin.h"
 
