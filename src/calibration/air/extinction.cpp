@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "foundation/base/median.h"
@@ -173,9 +172,8 @@ std::vector<Fading> fits_of_parts(const std::vector<Cell>& cells,
   std::vector<Fading> parts;
   for (int part = 0; part < kParts; ++part) {
     std::vector<Cell> some;
-    std::copy_if(cells.begin(), cells.end(), std::back_inserter(some), [&](const Cell& c) {
-      return c.sector % kParts == part;
-    });
+    for (const Cell& cell : cells)
+      if (cell.sector % kParts == part) some.push_back(cell);
     if (some.size() >= kMinCells / kParts) parts.push_back(fit(some, sky, altitude_m));
   }
   return parts;

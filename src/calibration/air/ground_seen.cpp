@@ -117,9 +117,7 @@ class Gatherer {
   }
 
   GroundSeen seen() {
-    std::stable_sort(seen_.squares.begin(),
-                     seen_.squares.end(),
-                     [](const SquareSeen& a, const SquareSeen& b) { return a.square < b.square; });
+    std::ranges::stable_sort(seen_.squares, {}, &SquareSeen::square);
     for (std::size_t i = 0; i < bands_.size(); ++i)
       if (const BandSum& band = bands_[i]; band.count >= kMinPixelsInBand)
         seen_.far.push_back({static_cast<int>(i / kBands),

@@ -257,10 +257,7 @@ std::vector<Guess> guesses(const std::array<Channel, 3>& channels) {
 
 // Mean and spread of the hypotheses, each weighted by exp(-cost / 2).
 ColourEstimate mean_of(const std::vector<Guess>& guesses) {
-  const double least =
-      std::min_element(guesses.begin(), guesses.end(), [](const Guess& a, const Guess& b) {
-        return a.cost < b.cost;
-      })->cost;
+  const double least = std::ranges::min(guesses, {}, &Guess::cost).cost;
   double total = 0;
   std::array<double, 3> sum{}, squares{};
   for (const Guess& guess : guesses) {

@@ -15,9 +15,7 @@ namespace airtruth::camera_file {
 namespace {
 
 const QuantityKey& key_of(std::string_view name) {
-  const auto found = std::find_if(kQuantityKeys.begin(),
-                                  kQuantityKeys.end(),
-                                  [&](const QuantityKey& key) { return key.name == name; });
+  const auto found = std::ranges::find(kQuantityKeys, name, &QuantityKey::name);
   if (found == kQuantityKeys.end())
     throw std::out_of_range("no quantity has the key " + std::string(name));
   return *found;

@@ -53,9 +53,8 @@ void fill_errors(std::vector<Estimate>& all) {
     if (e.sigma > 0) known.push_back(e.sigma);
   double usual = median_or_0(known);
   if (!(usual > 0)) {
-    const auto [least, most] = std::minmax_element(
-        all.begin(), all.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
-    usual = most->value - least->value;
+    const auto [least, most] = std::ranges::minmax(all, {}, &Estimate::value);
+    usual = most.value - least.value;
   }
   for (Estimate& e : all)
     if (!(e.sigma > 0)) e.sigma = usual;
@@ -76,10 +75,7 @@ std::string contradiction(const std::vector<ClipValue>& all, double middle) {
   const auto off = [&](const ClipValue& of) {
     return of.value.sigma > 0 ? (of.value.value - middle) / of.value.sigma : 0;
   };
-  const auto [least, most] =
-      std::minmax_element(all.begin(), all.end(), [&](const ClipValue& a, const ClipValue& b) {
-        return off(a) < off(b);
-      });
+  const auto [least, most] = std::ranges::minmax_element(all, {}, off);
   return fmt::format(
       "{} clips contradict one another by more than their errors, {} and {} most; the error covers "
       "what they differ by",

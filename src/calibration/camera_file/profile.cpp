@@ -50,9 +50,7 @@ std::vector<CameraProfile> read_library(std::string_view text) {
     profiles.push_back(parse_camera_profile(text.substr(line + 1, next - line - 1), name));
     text = next == text.npos ? std::string_view() : text.substr(next + 1);
   }
-  std::sort(profiles.begin(), profiles.end(), [](const auto& a, const auto& b) {
-    return a.name < b.name;
-  });
+  std::ranges::sort(profiles, {}, &CameraProfile::name);
   return profiles;
 }
 
@@ -143,8 +141,7 @@ CameraProfile parse_camera_profile(std::string_view text, const std::string& nam
       profile.tags[cells[1]] = cells[2];
       continue;
     }
-    const bool known =
-        std::find(kProfileKeys.begin(), kProfileKeys.end(), cells[0]) != kProfileKeys.end();
+    const bool known = std::ranges::find(kProfileKeys, cells[0]) != kProfileKeys.end();
     if (cells.size() != (known ? 4U : 2U))
       throw Error(fmt::format("has {} cells; expected key,value,error,clips or camera,WORDS, "
                               "width,PX, height,PX, clips,NUMBER, tag,KEY,BEGINNING",

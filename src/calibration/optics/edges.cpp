@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include <Eigen/Dense>
@@ -269,16 +268,13 @@ std::vector<const EdgeMeter::Edge*> EdgeMeter::usable(double codec_step) const {
   }
   if (slow.size() < kMinEdges) return all;
   const std::vector<const Edge*>& chosen = clear.size() >= kMinSymmetric ? clear : slow;
-  std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(long_ones), [](const Edge* edge) {
-    return edge->line.half_length_px == kLongEdgePx;
-  });
+  for (const Edge* edge : chosen)
+    if (edge->line.half_length_px == kLongEdgePx) long_ones.push_back(edge);
   return long_ones.size() >= kMinLong ? long_ones : chosen;
 }
 
 std::vector<const EdgeMeter::Edge*> EdgeMeter::by_width(std::vector<const Edge*> edges) {
-  std::sort(edges.begin(), edges.end(), [](const Edge* a, const Edge* b) {
-    return a->width_px < b->width_px;
-  });
+  std::ranges::sort(edges, {}, &Edge::width_px);
   // The sharpest hundredth is dropped: these edges are accidentally narrower than the camera's.
   edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 100));
   return edges;
@@ -286,25 +282,18 @@ std::vector<const EdgeMeter::Edge*> EdgeMeter::by_width(std::vector<const Edge*>
 
 double EdgeMeter::share_limited(const std::vector<const Edge*>& by_width) {
   const double widest_px = kLimitedWidthRatio * by_width[0]->width_px;
-  const auto count = std::count_if(by_width.begin(), by_width.end(), [&](const Edge* edge) {
-    return edge->width_px <= widest_px;
-  });
-  return double(count) / double(by_width.size());
+  const auto end = std::ranges::upper_bound(by_width, widest_px, {}, &Edge::width_px);
+  return double(end - by_width.begin()) / double(by_width.size());
 }
 
 std::vector<const StepEdge*> EdgeMeter::sharp_ones(std::vector<const Edge*> edges) {
   const auto keep = [&](std::size_t count, std::size_t fewest) {
     edges.resize(std::min(edges.size(), std::max(count, fewest)));
   };
-  const auto narrower_than = [&](double width_px) {
-    return static_cast<std::size_t>(std::count_if(
-        edges.begin(), edges.end(), [&](const Edge* edge) { return edge->width_px < width_px; }));
-  };
-  const auto by_asymmetry = [](const Edge* a, const Edge* b) {
-    return a->asymmetry < b->asymmetry;
-  };
-  keep(narrower_than(kMaxWidthRatio * edges[0]->width_px), kMinSymmetric);
-  std::sort(edges.begin(), edges.end(), by_asymmetry);
+  const double widest_px = kMaxWidthRatio * edges[0]->width_px;
+  const auto wider = std::ranges::lower_bound(edges, widest_px, {}, &Edge::width_px);
+  keep(static_cast<std::size_t>(wider - edges.begin()), kMinSymmetric);
+  std::ranges::sort(edges, {}, &Edge::asymmetry);
   keep(static_cast<std::size_t>(kSymmetricShare * double(edges.size())), kMinSymmetric);
   edges.resize(std::min(edges.size(), kMaxFitted));
   std::vector<const StepEdge*> sharp;

@@ -62,9 +62,7 @@ struct Weighted {
 
 // The weighted median: the least value at which the weights up to it reach half of their sum.
 double median_of(std::vector<Weighted> values) {
-  std::sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) {
-    return a.value < b.value;
-  });
+  std::ranges::sort(values, {}, &Weighted::value);
   double total = 0, below = 0;
   for (const Weighted& v : values) total += v.weight;
   for (const Weighted& v : values)

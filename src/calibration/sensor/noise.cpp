@@ -209,9 +209,7 @@ std::vector<NoiseMeter::Block> NoiseMeter::chosen() const {
   std::vector<Block> result;
   for (std::vector<Block>& bin : bins) {
     if (bin.size() < kMinBlocks) continue;
-    std::sort(bin.begin(), bin.end(), [](const Block& a, const Block& b) {
-      return a.flatness < b.flatness;
-    });
+    std::ranges::sort(bin, {}, &Block::flatness);
     const auto count =
         std::max(kMinBlocks / 2, static_cast<std::size_t>(kFlatShare * double(bin.size())));
     result.insert(result.end(), bin.begin(), bin.begin() + static_cast<std::ptrdiff_t>(count));

@@ -43,10 +43,7 @@ std::vector<Vector3> rates_of(std::span<const std::uint8_t> stream) {
 std::optional<Vector3> mean_rate(const std::vector<GyroSample>& gyro,
                                  double begin_s,
                                  double end_s) {
-  const auto first =
-      std::lower_bound(gyro.begin(), gyro.end(), begin_s, [](const GyroSample& s, double t) {
-        return s.time_s < t;
-      });
+  const auto first = std::ranges::lower_bound(gyro, begin_s, {}, &GyroSample::time_s);
   Vector3 sum = Vector3::Zero();
   int count = 0;
   for (auto it = first; it != gyro.end() && it->time_s < end_s; ++it)

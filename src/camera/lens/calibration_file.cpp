@@ -278,9 +278,8 @@ std::string scene_table(const Lens& lens) {
                   lens.name(),
                   list_of({facts.focal_px[0], facts.focal_px[1]}),
                   list_of({facts.principal_point_px[0], facts.principal_point_px[1]}));
-  const bool any = std::any_of(
-      facts.distortion.begin(), facts.distortion.end(), [](double k) { return k != 0; });
-  if (any) text += fmt::format("distortion = [{}]\n", list_of(facts.distortion));
+  if (std::ranges::any_of(facts.distortion, [](double k) { return k != 0; }))
+    text += fmt::format("distortion = [{}]\n", list_of(facts.distortion));
   return text;
 }
 

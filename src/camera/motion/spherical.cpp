@@ -207,8 +207,7 @@ class KeyFrames {
       if (link.from != key.id && link.to != key.id) continue;
       const bool is_later = link.to == key.id;
       const int other_id = is_later ? link.from : link.to;
-      const Key& other = *std::find_if(
-          keys_.begin(), keys_.end(), [other_id](const Key& k) { return k.id == other_id; });
+      const Key& other = *std::ranges::find(keys_, other_id, &Key::id);
       const Quaternion reference_from_other = other.cam_from_reference.conjugate();
       const std::int64_t frames = std::abs(key.frame - other.frame);
       for (const Bearings& b : link.seen)
