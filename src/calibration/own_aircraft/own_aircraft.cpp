@@ -100,16 +100,14 @@ struct FrameSums {
 
   // The picture for GrabCut. Its channels are the mean grey, the standard deviation of grey over
   // time, and the difference between blue and red.
-  cv::Mat features() const {
+  cv::Mat features(const cv::Mat& spread) const {
     const cv::Mat mean = rgb / double(count);
     cv::Mat grey, planes[3];
     cv::cvtColor(mean, grey, cv::COLOR_RGB2GRAY);
     cv::split(mean, planes);
-    cv::Mat spread = this->spread();
-    spread *= kSpreadGain;
     const cv::Mat colour = (planes[2] - planes[0]) * kColourGain + kColourOffset;
     cv::Mat result;
-    cv::merge(std::vector<cv::Mat>{grey, spread, colour}, result);
+    cv::merge(std::vector<cv::Mat>{grey, spread * kSpreadGain, colour}, result);
     result.convertTo(result, CV_8UC3);
     return result;
   }
@@ -237,7 +235,8 @@ cv::Mat labels_by_stillness(const Stillness& pairs) {
 
 // The constants of the region were chosen on the virtual flights of surroundings_slow_test.cpp.
 
-// The steady limit, as a multiple of the median, and its least value in code values.
+// The largest standard deviation over time that a pixel of the aircraft may have, as a multiple of
+// the median of the candidates, and its least value in code values.
 constexpr float kSteadyMedians = 3, kMinSteady = 5;
 // A part as steady as the largest one: its median standard deviation is at most this multiple of
 // that of the largest part, plus code values. Cloud may have the colour of the aircraft and hardly
@@ -287,19 +286,6 @@ struct Parts {
   }
 };
 
-// Small holes in the aircraft are part of it.
-void fill_holes(cv::Mat& region, int max_area) {
-  const Parts holes(region == 0, 4);
-  for (int i = 1; i < holes.count; ++i)
-    if (holes.area(i) < max_area) region.setTo(1, holes.where(i));
-}
-
-// The largest standard deviation over time, code values, that a pixel of the aircraft may have: a
-// multiple of the one that most of the candidate pixels have.
-float steady_limit(const cv::Mat& spread, const cv::Mat& candidates) {
-  return std::max(kMinSteady, kSteadyMedians * median_where(spread, candidates));
-}
-
 // Takes certainty from the labels of pixels that change more over time than the aircraft. A pixel
 // of the world also fits badly if the aircraft hides its place in the other frame; but the world
 // changes over the whole clip, and the aircraft does not.
@@ -340,7 +326,10 @@ void keep_certain_parts(cv::Mat& region, const cv::Mat& certain, const cv::Mat& 
         median_where(spread, here) > kAsSteady * steady + kAsSteadyCodes)
       region.setTo(0, here);
   }
-  fill_holes(region, least);
+  // Small holes in the aircraft are part of it.
+  const Parts holes(region == 0, 4);
+  for (int i = 1; i < holes.count; ++i)
+    if (holes.area(i) < least) region.setTo(1, holes.where(i));
 }
 
 // Refines the border of the region to full-size pixels. Only a band along the border is decided
@@ -376,15 +365,6 @@ image::Mask mask_of(const cv::Mat& aircraft) {
   mask.free.resize(aircraft.total());
   cv::Mat(aircraft == 0).copyTo(image::mat_of(mask));
   return mask;
-}
-
-// Throws Error if the clip does not show what stays still and what moves.
-void check_motion(const Stillness& pairs, double scale, const fs::path& video) {
-  if (pairs.pairs < kMinPairs)
-    throw Error(
-        "is too still to separate the own aircraft from the world: the picture moves less than " +
-            std::to_string(static_cast<int>(kMinPairMotionPx / scale)) + " px",
-        {video.string()});
 }
 
 // Reads the video to its end and keeps every n-th frame, reduced by `scale`, with the motion of the
@@ -425,21 +405,27 @@ image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options)
       std::min(1.0, double(kWorkingLongSidePx) / std::max(size.width, size.height));
   const auto [frames, sums] = keep_frames(video, reader, options, scale);
   const Stillness pairs = stillness_of(frames, scale);
-  check_motion(pairs, scale, video);
+  if (pairs.pairs < kMinPairs)
+    throw Error(
+        "is too still to separate the own aircraft from the world: the picture moves less than " +
+            std::to_string(static_cast<int>(kMinPairMotionPx / scale)) + " px",
+        {video.string()});
   cv::Mat labels = labels_by_stillness(pairs);
-  cv::Mat spread;
-  cv::resize(sums.spread(), spread, labels.size(), 0, 0, cv::INTER_AREA);
-  const float steady = steady_limit(spread, labels == cv::GC_FGD);
-  distrust_changing(labels, spread, steady);
+  const cv::Mat spread = sums.spread();
+  cv::Mat small_spread;
+  cv::resize(spread, small_spread, labels.size(), 0, 0, cv::INTER_AREA);
+  const float steady =
+      std::max(kMinSteady, kSteadyMedians * median_where(small_spread, labels == cv::GC_FGD));
+  distrust_changing(labels, small_spread, steady);
   const cv::Mat certain = labels == cv::GC_FGD;
   if (cv::countNonZero(certain) < labels.rows * labels.cols / kPictureOverCertain)
     return mask_of(cv::Mat::zeros(size, CV_8UC1));
-  const cv::Mat features = sums.features();
+  const cv::Mat features = sums.features(spread);
   cv::Mat small;
   cv::resize(features, small, labels.size(), 0, 0, cv::INTER_AREA);
   cv::Mat region = region_from_labels(small, labels);
-  keep_certain_parts(region, certain, spread);
-  return mask_of(refined(region, features, sums.spread(), steady));
+  keep_certain_parts(region, certain, small_spread);
+  return mask_of(refined(region, features, spread, steady));
 }
 
 }  // namespace airtruth::own_aircraft
