@@ -7,6 +7,7 @@
 
 #include <Eigen/SVD>
 
+#include "foundation/base/median.h"
 #include "foundation/base/seed.h"
 
 namespace airtruth::motion {
@@ -166,6 +167,34 @@ std::optional<Start> start_of(const std::vector<Bearings>& bearings,
   return std::nullopt;
 }
 
+// The variance that parallax adds to the squared residual of two coordinates, per squared nearness:
+// the median over the near points of their squared residual beyond noise. It is 0 where there are
+// no near points.
+double parallax_variance(const std::vector<Bearings>& bearings,
+                         const Matrix3& r,
+                         double noise_rad) {
+  // Mean over median of chi squared with two degrees of freedom.
+  constexpr double kMeanOverMedian = 2 / 1.386;
+  std::vector<double> ratios;
+  for (const Bearings& b : bearings)
+    if (!b.near.is_far)
+      ratios.push_back(std::max(0.0, miss(r, b) - 2 * noise_rad * noise_rad) /
+                       (b.near.value * b.near.value));
+  return kMeanOverMedian * median_or_0(std::move(ratios));
+}
+
+// The weight of a point: (noise / (noise + parallax))^2, both as variances, times the weight of
+// Geman and McClure (1987) against outliers. The ratio is squared because the parallax of
+// neighbours is correlated and does not average out. Ground without parallax has full weight, as
+// below a camera at great height or at rest.
+double weight_of(
+    double squared_miss, double noise, double scale, double limit, double of_parallax) {
+  if (squared_miss > limit * limit + 4 * of_parallax) return 0;
+  const double share = noise * noise / (noise * noise + of_parallax);
+  const double e = squared_miss / (scale * scale + of_parallax);
+  return share * share / ((1 + e) * (1 + e));
+}
+
 // Iteratively reweighted least squares from the start.
 Quaternion refined(const Start& start, const std::vector<Bearings>& bearings, double limit_rad) {
   Quaternion cam_from_reference(start.cam_from_reference);
@@ -174,10 +203,7 @@ Quaternion refined(const Start& start, const std::vector<Bearings>& bearings, do
   const double noise_rad = limit_rad / 4;
   for (int step = 0; step < kRefinements; ++step) {
     const Matrix3 r = cam_from_reference.toRotationMatrix();
-    Parallax parallax(noise_rad);
-    if (start.is_by_far)
-      for (const Bearings& b : bearings) parallax.add(miss(r, b), b.near);
-    const double variance = parallax.variance();
+    const double variance = start.is_by_far ? parallax_variance(bearings, r, noise_rad) : 0;
     for (std::size_t i = 0; i < bearings.size(); ++i) {
       const Nearness& near = bearings[i].near;
       weights[i] = start.is_by_far && step < kFarSteps && !near.is_far

@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "foundation/base/median.h"
 #include "foundation/geometry/transform.h"
 
 // The weights of near points. While the camera flies, near ground moves against far points
@@ -36,40 +35,6 @@ inline Nearness nearness_of(const Vector3& ray_in_any,
   return {sine * static_cast<double>(frames), sine < std::sin(radians(kFarDepressionDeg))};
 }
 
-// Estimates the variance that parallax adds to the squared residual of two coordinates, per squared
-// nearness: the median over the near points of their squared residual beyond noise. It is 0 where
-// there are no near points.
-class Parallax {
- public:
-  explicit Parallax(double noise) : noise_(noise) {}
-  void add(double squared_miss, const Nearness& near) {
-    if (!near.is_far)
-      ratios_.push_back(std::max(0.0, squared_miss - 2 * noise_ * noise_) /
-                        (near.value * near.value));
-  }
-  double variance() {
-    // Mean over median of chi squared with two degrees of freedom.
-    constexpr double kMeanOverMedian = 2 / 1.386;
-    return ratios_.empty() ? 0 : kMeanOverMedian * median(std::move(ratios_));
-  }
-
- private:
-  double noise_;
-  std::vector<double> ratios_;
-};
-
-// The weight of a point: (noise / (noise + parallax))^2, both as variances, times the weight of
-// Geman and McClure (1987) against outliers. The ratio is squared because the parallax of
-// neighbours is correlated and does not average out. Ground without parallax has full weight, as
-// below a camera at great height or at rest.
-inline double weight_of(
-    double squared_miss, double noise, double scale, double limit, double of_parallax) {
-  if (squared_miss > limit * limit + 4 * of_parallax) return 0;
-  const double share = noise * noise / (noise * noise + of_parallax);
-  const double e = squared_miss / (scale * scale + of_parallax);
-  return share * share / ((1 + e) * (1 + e));
-}
-
 // The directions of a point in two frames, as unit vectors.
 struct Bearings {
   Vector3 in_reference;
@@ -91,8 +56,7 @@ struct RotationFit {
 // to one direction, since the rotation about that direction is then unknown.
 //
 // Where enough points are far, the far points alone determine the rotation with which the fit
-// starts. The parallax of the near points is then measured, and it reduces their weights
-// (rotation_fit.h).
+// starts. The parallax of the near points is then measured, and it reduces their weights.
 std::optional<RotationFit> fit_rotation(const std::vector<Bearings>& bearings,
                                         double limit_rad,
                                         int min_inliers,
