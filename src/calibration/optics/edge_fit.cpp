@@ -23,25 +23,22 @@ double bend(double x, double sigma) {
 
 }  // namespace
 
-UnsharpMask::UnsharpMask(double amount, double radius_px) : amount_(amount) {
-  const double sigma = std::hypot(radius_px, std::sqrt(1.0 / 12)) * StepModel::kPerPixel;
+std::vector<double> StepModel::blur_of(double radius_px) {
+  const double sigma = std::hypot(radius_px, std::sqrt(1.0 / 12)) * kPerPixel;
   const int reach = static_cast<int>(std::ceil(4.5 * sigma));
+  std::vector<double> kernel;
   double total = 0;
   for (int j = -reach; j <= reach; ++j) {
-    kernel_.push_back(std::exp(-0.5 * (j / sigma) * (j / sigma)));
-    total += kernel_.back();
+    kernel.push_back(std::exp(-0.5 * (j / sigma) * (j / sigma)));
+    total += kernel.back();
   }
-  for (double& weight : kernel_) weight /= total;
-}
-
-UnsharpMask UnsharpMask::with_amount(double amount) const {
-  UnsharpMask other = *this;
-  other.amount_ = amount;
-  return other;
+  for (double& weight : kernel) weight /= total;
+  return kernel;
 }
 
 StepModel::StepModel(double spread_px,
-                     const UnsharpMask& mask,
+                     double amount,
+                     const std::vector<double>& blur,
                      double low,
                      double high,
                      const image::ToneCurve& tone) {
@@ -56,25 +53,25 @@ StepModel::StepModel(double spread_px,
     const double risen = bends[i + 2 * kPerPixel] - 2 * bends[i + kPerPixel] + bends[i];
     heights_[i] = (tone.coded_from_linear(dark + (bright - dark) * risen) - low) / (high - low);
   }
-  if (mask.amount_ != 0) sharpen(mask);
+  if (amount != 0) sharpen(amount, blur);
   for (const double height : heights_) middle_ += (1 - height) / kPerPixel;
   middle_ -= kHalf + 0.5 / kPerPixel;
 }
 
-void StepModel::sharpen(const UnsharpMask& mask) {
+void StepModel::sharpen(double amount, const std::vector<double>& blur) {
   const auto count = static_cast<Eigen::Index>(kCount);
-  const auto reach = static_cast<Eigen::Index>(mask.kernel_.size() / 2);
+  const auto reach = static_cast<Eigen::Index>(blur.size() / 2);
   Eigen::ArrayXd beyond(count + 2 * reach);
   beyond.head(reach) = heights_.front();
   beyond.tail(reach) = heights_.back();
   Eigen::Map<Eigen::ArrayXd> heights(heights_.data(), count);
   beyond.segment(reach, count) = heights;
   // The kernel is symmetric.
-  Eigen::ArrayXd soft = mask.kernel_[static_cast<std::size_t>(reach)] * heights;
+  Eigen::ArrayXd soft = blur[static_cast<std::size_t>(reach)] * heights;
   for (Eigen::Index j = 0; j < reach; ++j)
-    soft += mask.kernel_[static_cast<std::size_t>(j)] *
+    soft += blur[static_cast<std::size_t>(j)] *
             (beyond.segment(j, count) + beyond.segment(2 * reach - j, count));
-  heights += mask.amount_ * (heights - soft);
+  heights += amount * (heights - soft);
 }
 
 double StepModel::slope(std::size_t i) const {
@@ -108,15 +105,15 @@ constexpr double kMinChange = 0.001;
 // Largest number of rounds: it ends a fit that oscillates.
 constexpr int kMaxRounds = 12;
 
-// The Jacobian under a mask of the radius of `mask`. Its columns are plateau, height, place, spread
+// The Jacobian under a mask of this blur. Its columns are plateau, height, place, spread
 // and, if it is unknown, the amount.
 Eigen::MatrixXd slopes_of(const GatheredEdge& edge,
                           const EdgeFit& fit,
-                          const UnsharpMask& mask,
+                          const std::vector<double>& blur,
                           Eigen::Index unknowns,
                           const image::ToneCurve& tone) {
   const auto model = [&](double spread_px, double amount) {
-    return StepModel(spread_px, mask.with_amount(amount), edge.low, edge.high, tone);
+    return StepModel(spread_px, amount, blur, edge.low, edge.high, tone);
   };
   const StepModel here = model(fit.spread_px, fit.amount);
   const StepModel wider = model(fit.spread_px * std::exp(kDerivativeStep), fit.amount);
@@ -140,7 +137,7 @@ bool is_within_bounds(const EdgeFit& fit) {
 }
 
 EdgeFit fitted(const GatheredEdge& edge,
-               const UnsharpMask& mask,
+               const std::vector<double>& blur,
                std::optional<double> amount,
                const image::ToneCurve& tone,
                const EdgeFit& start) {
@@ -151,7 +148,7 @@ EdgeFit fitted(const GatheredEdge& edge,
   fit.amount = amount.value_or(start.amount);
   for (int round = 0; round < kMaxRounds; ++round) {
     const Eigen::MatrixXd slopes =
-        edge.roots.asDiagonal() * slopes_of(edge, fit, mask, unknowns, tone);
+        edge.roots.asDiagonal() * slopes_of(edge, fit, blur, unknowns, tone);
     Eigen::MatrixXd square = slopes.transpose() * slopes;
     square.diagonal().array() += 1e-9 * square.trace();
     const Eigen::MatrixXd inverse = square.inverse();
@@ -208,10 +205,10 @@ std::vector<EdgeFit> fit_edges(const std::vector<GatheredEdge>& edges,
                                const image::ToneCurve& tone,
                                const std::vector<EdgeFit>& start) {
   std::vector<EdgeFit> fits(edges.size());
-  const UnsharpMask mask(0, radius_px);
+  const std::vector<double> blur = StepModel::blur_of(radius_px);
   tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t e) {
     const bool is_known = !start.empty() && is_within_bounds(start[e]);
-    fits[e] = fitted(edges[e], mask, amount, tone, is_known ? start[e] : EdgeFit{});
+    fits[e] = fitted(edges[e], blur, amount, tone, is_known ? start[e] : EdgeFit{});
   });
   return fits;
 }

@@ -14,29 +14,19 @@
 
 namespace airtruth::optics {
 
-// An unsharp mask on coded luma: the picture plus `amount` times the difference between the picture
-// and its Gaussian blur. `radius_px` is the standard deviation of the blur. Picture and blur are
-// integrated over whole pixels.
-class UnsharpMask {
- public:
-  UnsharpMask(double amount, double radius_px);
-  // The mask of the same radius with another amount.
-  UnsharpMask with_amount(double amount) const;
-
- private:
-  friend class StepModel;
-  double amount_;
-  // Kernel at the spacing of StepModel's places.
-  std::vector<double> kernel_;
-};
-
 // The response of a camera to a step of light between two coded levels: a Gaussian spread in linear
-// light, then the tone curve, then the unsharp mask. Heights are 0 and 1 far from the step. Places
-// are in px from the middle of the coded step.
+// light, then the tone curve, then an unsharp mask on coded luma: the picture plus `amount` times
+// the difference between the picture and its Gaussian blur. Heights are 0 and 1 far from the step.
+// Places are in px from the middle of the coded step.
 class StepModel {
  public:
+  // The kernel of a mask's blur with this standard deviation, at the spacing of the table of
+  // heights. Picture and blur are integrated over whole pixels.
+  static std::vector<double> blur_of(double radius_px);
+
   StepModel(double spread_px,
-            const UnsharpMask& mask,
+            double amount,
+            const std::vector<double>& blur,
             double low,
             double high,
             const image::ToneCurve& tone);
@@ -45,14 +35,13 @@ class StepModel {
   std::pair<double, double> at(double place_px) const;
 
  private:
-  friend class UnsharpMask;
   // Half the length of the table of heights, px: places beyond it have the height of its ends.
   static constexpr double kHalf = 9;
   // The number of table entries per pixel.
   static constexpr int kPerPixel = 10;
   // The number of table entries.
   static constexpr std::size_t kCount = 2 * static_cast<std::size_t>(kHalf) * kPerPixel + 1;
-  void sharpen(const UnsharpMask& mask);
+  void sharpen(double amount, const std::vector<double>& blur);
   double slope(std::size_t i) const;
 
   std::array<double, kCount> heights_{};

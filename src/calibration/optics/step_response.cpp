@@ -196,7 +196,8 @@ StepModel model_of(const StepResponse& response,
                    double high,
                    const image::ToneCurve& tone) {
   return {response.point_spread_px.value,
-          {response.sharpening.value, response.sharpening_px.value},
+          response.sharpening.value,
+          StepModel::blur_of(response.sharpening_px.value),
           low,
           high,
           tone};
