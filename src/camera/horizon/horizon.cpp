@@ -156,22 +156,17 @@ double area_before(const Pixel& normal, double t) {
   return 1 - left * left / (2 * wide * narrow);
 }
 
-// The up direction whose side ahead of the camera is raised by an angle.
-Vector3 raised_ahead(const Vector3& up_in_cam, double angle_rad) {
-  const Vector3 up = up_in_cam.normalized();
-  const Vector3 ahead = Vector3::UnitZ() - up.z() * up;
-  if (ahead.norm() < kLeastAhead) return up;
-  return std::cos(angle_rad) * up - std::sin(angle_rad) * ahead.normalized();
-}
-
 }  // namespace
 
 Vector3 up_from_seen(const Vector3& seen_up_in_cam, double dip_rad) {
-  return raised_ahead(seen_up_in_cam, dip_rad);
+  const Vector3 up = seen_up_in_cam.normalized();
+  const Vector3 ahead = Vector3::UnitZ() - up.z() * up;
+  if (ahead.norm() < kLeastAhead) return up;
+  return std::cos(dip_rad) * up - std::sin(dip_rad) * ahead.normalized();
 }
 
 Vector3 seen_from_up(const Vector3& up_in_cam, double dip_rad) {
-  return raised_ahead(up_in_cam, -dip_rad);
+  return up_from_seen(up_in_cam, -dip_rad);
 }
 
 Quaternion cam_from_level(const Vector3& up_in_cam) {
