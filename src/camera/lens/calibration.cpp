@@ -89,8 +89,9 @@ Calibration parse_gyroflow_profile(std::string_view text, const std::filesystem:
 namespace {
 
 struct Value {
+  std::string key;  // without ".data"
   std::string text;
-  int line = 0;
+  Where where;
 };
 // A calibration of 14 coefficients has about 1 kB. yaml-cpp takes about 3 s for the worst text of 1
 // MB.
@@ -101,6 +102,11 @@ constexpr std::size_t kLongestValue_bytes = 4096;
 // "camera_matrix.data" -> "[ 1, 0, ... ]", as often as the file has it.
 using Values = std::multimap<std::string, Value>;
 
+void keep(Values& values, const std::string& name, const std::string& text, const Where& where) {
+  const std::string key = name.ends_with(".data") ? name.substr(0, name.size() - 5) : name;
+  values.emplace(name, Value{key, text, where});
+}
+
 Values values_of_xml(std::string_view text, const std::string& file) {
   pugi::xml_document document;
   const auto parsed = document.load_buffer(text.data(), text.size());
@@ -109,13 +115,11 @@ Values values_of_xml(std::string_view text, const std::string& file) {
                 {file, line_of(text, parsed.offset)});
   Values values;
   for (const pugi::xml_node node : document.child("opencv_storage")) {
-    const int line = line_of(text, node.offset_debug());
-    if (node.child("data")) {
-      values.emplace(std::string(node.name()) + ".data",
-                     Value{node.child("data").text().get(), line});
-    } else {
-      values.emplace(node.name(), Value{node.text().get(), line});
-    }
+    const pugi::xml_node data = node.child("data");
+    keep(values,
+         std::string(node.name()) + (data ? ".data" : ""),
+         (data ? data : node).text().get(),
+         {file, line_of(text, node.offset_debug())});
   }
   if (values.empty())
     throw Error("holds no <opencv_storage> with values; expected an OpenCV calibration", {file});
@@ -131,10 +135,10 @@ void append(const YAML::Node& node, int depth, std::string& text) {
   for (const YAML::Node& element : node) append(element, depth - 1, text);
 }
 
-Value value_of(const YAML::Node& node, int line) {
-  Value value{"", line};
-  append(node, 2, value.text);
-  return value;
+std::string scalars_of(const YAML::Node& node) {
+  std::string text;
+  append(node, 2, text);
+  return text;
 }
 
 // The camera of a Kalibr camchain, whose top level has cam0, cam1 and so on; undefined for any
@@ -189,7 +193,7 @@ Values values_of_yaml(std::string_view text, const std::string& file) {
   // A second document is a key that nothing reads.
   if (const auto before = static_cast<int>(std::ranges::count(text.substr(0, end), '\n'));
       document_of(text.substr(end), before, file).IsMap())
-    values.emplace("---", Value{"", before + 1});
+    keep(values, "---", "", {file, before + 1});
   if (!document.IsMap()) return values;
   YAML::Node top = document;
   if (const YAML::Node camera = only_camera(top, file); camera.IsMap()) top.reset(camera);
@@ -197,12 +201,12 @@ Values values_of_yaml(std::string_view text, const std::string& file) {
     const YAML::Node& name = entry.first;
     const YAML::Node& node = entry.second;
     if (!name.IsScalar()) continue;
-    const int line = name.Mark().line + 1;
     const YAML::Node data = node.IsMap() ? node["data"] : YAML::Node(YAML::NodeType::Undefined);
-    if (data.IsDefined())
-      values.emplace(name.Scalar() + ".data", value_of(data, line));
-    else
-      values.emplace(name.Scalar(), value_of(node, line));
+    const bool has_data = data.IsDefined();
+    keep(values,
+         name.Scalar() + (has_data ? ".data" : ""),
+         scalars_of(has_data ? data : node),
+         {file, name.Mark().line + 1});
   }
   return values;
 }
@@ -215,7 +219,7 @@ std::istringstream words_of(const Value& value) {
   return std::istringstream(text);
 }
 
-std::vector<double> numbers(const Value& value, const std::string& key, const std::string& file) {
+std::vector<double> numbers(const Value& value) {
   std::vector<double> result;
   std::istringstream words = words_of(value);
   for (std::string word; words >> word;) {
@@ -225,9 +229,9 @@ std::vector<double> numbers(const Value& value, const std::string& key, const st
     const bool trailing_dot =
         rest != end && *rest == '.' && rest + 1 == end;  // FileStorage writes "0."
     if (failed != std::errc() || (rest != end && !trailing_dot) || !std::isfinite(number))
-      throw Error(key + " holds '" + word.substr(0, 40) + "'; expected a finite number",
-                  {file, value.line});
-    if (result.size() == 64) throw Error(key + " holds too many numbers", {file, value.line});
+      throw Error(value.key + " holds '" + word.substr(0, 40) + "'; expected a finite number",
+                  value.where);
+    if (result.size() == 64) throw Error(value.key + " holds too many numbers", value.where);
     result.push_back(number);
   }
   return result;
@@ -249,10 +253,7 @@ bool say_the_same(const Value& a, const Value& b) {
 
 // The value of the keys of one meaning; nullptr where the file has none. Throws Error where it has
 // two that differ.
-const Value* find(const Values& values,
-                  const std::vector<std::string>& keys,
-                  std::string* found,
-                  const std::string& file) {
+const Value* find(const Values& values, const std::vector<std::string>& keys) {
   const Value* first = nullptr;
   for (const std::string& key : keys) {
     for (const std::string& name : {key + ".data", key}) {
@@ -260,29 +261,27 @@ const Value* find(const Values& values,
       for (auto at = begin; at != end; ++at) {
         const Value& value = at->second;
         if (value.text.empty()) continue;
-        if (first == nullptr) {
-          *found = key;
+        if (first == nullptr)
           first = &value;
-        } else if (!say_the_same(*first, value)) {
-          throw Error(
-              fmt::format(
-                  "{} differs from {} in line {}; expected one lens", key, *found, first->line),
-              {file, value.line});
-        }
+        else if (!say_the_same(*first, value))
+          throw Error(fmt::format("{} differs from {} in line {}; expected one lens",
+                                  value.key,
+                                  first->key,
+                                  first->where.line),
+                      value.where);
       }
     }
   }
   return first;
 }
 
-int whole(const Values& values, const std::vector<std::string>& keys, const std::string& file) {
-  std::string key;
-  const Value* value = find(values, keys, &key, file);
+int whole(const Values& values, const std::vector<std::string>& keys) {
+  const Value* value = find(values, keys);
   if (value == nullptr) return 0;
-  const auto list = numbers(*value, key, file);
+  const auto list = numbers(*value);
   if (list.size() != 1 || list[0] < 1 || list[0] > 65536)
-    throw Error(key + " is '" + value->text.substr(0, 40) + "'; expected a size in pixels",
-                {file, value->line});
+    throw Error(value->key + " is '" + value->text.substr(0, 40) + "'; expected a size in pixels",
+                value->where);
   return static_cast<int>(list[0]);
 }
 
@@ -328,7 +327,7 @@ bool is_among(const std::string& key, const std::vector<std::string>& keys) {
 // Names of lens models, in any of kModels, whatever their case: true for a fisheye, false for a
 // pinhole with or without distortion. Throws Error for any other, such as a name with a word that
 // is not known.
-bool is_fisheye_model(const std::string& key, const Value& value, const std::string& file) {
+bool is_fisheye_model(const Value& value) {
   std::string letters = lower_case(value.text);
   std::ranges::replace_if(
       letters, [](char c) { return c < 'a' || c > 'z'; }, ' ');
@@ -342,44 +341,43 @@ bool is_fisheye_model(const std::string& key, const Value& value, const std::str
   };
   if (is_named_by(kFisheyeWords, kBesideFisheye)) return true;
   if (is_named_by(kPinholeWords, kBesidePinhole)) return false;
-  throw Error(key + " is '" + value.text.substr(0, 40) +
+  throw Error(value.key + " is '" + value.text.substr(0, 40) +
                   "', a lens model that cannot be honoured; expected pinhole, plumb_bob, radtan, "
                   "rational_polynomial, fisheye or equidistant",
-              {file, value.line});
+              value.where);
 }
 
 // Whether the file says that its lens is a fisheye; empty where it says nothing.
-std::optional<bool> says_fisheye(const Values& values, const std::string& file) {
-  std::string key;
-  if (const Value* value = find(values, kFisheyeFlag, &key, file)) {
+std::optional<bool> says_fisheye(const Values& values) {
+  if (const Value* value = find(values, kFisheyeFlag)) {
     const std::string flag(airtruth::trimmed(value->text));
     if (flag == "1" || flag == "true") return true;
     if (flag == "0" || flag == "false") return false;
-    throw Error(key + " is '" + flag.substr(0, 40) + "'; expected 0 or 1", {file, value->line});
+    throw Error(value->key + " is '" + flag.substr(0, 40) + "'; expected 0 or 1", value->where);
   }
   // Kalibr states two: the projection and the distortion. The second decides.
   std::optional<bool> says;
   for (const std::string& name : kModels)
-    if (const Value* model = find(values, {name}, &key, file)) {
-      const bool is_fisheye = is_fisheye_model(name, *model, file);
+    if (const Value* model = find(values, {name})) {
+      const bool is_fisheye = is_fisheye_model(*model);
       says = says.value_or(false) || is_fisheye;
     }
   return says;
 }
 
 // ROS's region of interest and binning: nothing where they are 0 or 1, as drivers write them.
-bool is_idle(const std::string& key, const Value& value, const std::string& file) {
-  if (key != "binning_x" && key != "binning_y") return false;
-  const std::vector<double> list = numbers(value, key, file);
+bool is_idle(const Value& value) {
+  if (value.key != "binning_x" && value.key != "binning_y") return false;
+  const std::vector<double> list = numbers(value);
   return list.size() == 1 && (list[0] == 0 || list[0] == 1);
 }
 
 // Keys that are neither used nor harmless: an error where the name is one of a lens's, and a
 // warning else.
-void expect_known_keys(const Values& values, const std::string& file, Calibration& c) {
+void expect_known_keys(const Values& values, Calibration& c) {
   for (const auto& [name, value] : values) {
-    const std::string key = name.ends_with(".data") ? name.substr(0, name.size() - 5) : name;
-    bool is_known = is_among(key, kHarmless) || is_idle(key, value, file);
+    const std::string& key = value.key;
+    bool is_known = is_among(key, kHarmless) || is_idle(value);
     for (const auto& keys :
          {kMatrix, kDistortion, kWidth, kHeight, kBothSides, kFisheyeFlag, kModels, kIntrinsics})
       is_known = is_known || is_among(key, keys);
@@ -390,30 +388,29 @@ void expect_known_keys(const Values& values, const std::string& file, Calibratio
         throw Error("has '" + key.substr(0, 60) +
                         "', which is no key that is known; expected camera_matrix, "
                         "distortion_coefficients, distortion_model and the like",
-                    {file, value.line});
+                    value.where);
     if (small == "xi")
-      throw Error("has xi, the parameter of a lens model that cannot be honoured",
-                  {file, value.line});
-    c.unread.push_back(fmt::format("{}:{}: '{}' is not read", file, value.line, key.substr(0, 60)));
+      throw Error("has xi, the parameter of a lens model that cannot be honoured", value.where);
+    c.unread.push_back(
+        fmt::format("{}: '{}' is not read", to_string(value.where), key.substr(0, 60)));
   }
 }
 
 // The sizes of a camera by one key with both sides, or by two.
 ImageSize size_in(const Values& values, const std::string& file) {
-  const ImageSize size{whole(values, kWidth, file), whole(values, kHeight, file)};
-  std::string key;
-  if (const Value* both = find(values, kBothSides, &key, file)) {
-    const auto list = numbers(*both, key, file);
+  const ImageSize size{whole(values, kWidth), whole(values, kHeight)};
+  if (const Value* both = find(values, kBothSides)) {
+    const auto list = numbers(*both);
     for (const double side : list)
       if (list.size() != 2 || side < 1 || side > 65536 || side != std::floor(side))
-        throw Error(key + " is '" + both->text.substr(0, 40) + "'; expected [width, height]",
-                    {file, both->line});
+        throw Error(both->key + " is '" + both->text.substr(0, 40) + "'; expected [width, height]",
+                    both->where);
     if (list.size() == 2) {
       if ((size.width != 0 && size.width != list[0]) ||
           (size.height != 0 && size.height != list[1]))
-        throw Error(key + " differs from " + std::to_string(size.width) + "x" +
+        throw Error(both->key + " differs from " + std::to_string(size.width) + "x" +
                         std::to_string(size.height) + " of two keys; expected one size",
-                    {file, both->line});
+                    both->where);
       return {static_cast<int>(list[0]), static_cast<int>(list[1])};
     }
   }
@@ -423,27 +420,26 @@ ImageSize size_in(const Values& values, const std::string& file) {
 }
 
 std::array<double, 9> matrix_in(const Values& values, const std::string& file) {
-  std::string key;
   std::array<double, 9> matrix{};
-  if (const Value* value = find(values, kMatrix, &key, file)) {
-    const auto m = numbers(*value, key, file);
+  if (const Value* value = find(values, kMatrix)) {
+    const auto m = numbers(*value);
     if (m.size() != 9)
-      throw Error(key + " holds " + std::to_string(m.size()) + " numbers; expected 9",
-                  {file, value->line});
+      throw Error(value->key + " holds " + std::to_string(m.size()) + " numbers; expected 9",
+                  value->where);
     std::copy(m.begin(), m.end(), matrix.begin());
     return matrix;
   }
-  const Value* intrinsics = find(values, kIntrinsics, &key, file);
+  const Value* intrinsics = find(values, kIntrinsics);
   if (intrinsics == nullptr)
     throw Error(
         "has no camera_matrix; expected a calibration of OpenCV, ROS or Kalibr, or a .json of "
         "Gyroflow with fisheye_params",
         {file});
-  const auto n = numbers(*intrinsics, key, file);
+  const auto n = numbers(*intrinsics);
   if (n.size() != 4)
     throw Error(
         "intrinsics holds " + std::to_string(n.size()) + " numbers; expected fx, fy, cx, cy",
-        {file, intrinsics->line});
+        intrinsics->where);
   return {n[0], 0, n[2], 0, n[1], n[3], 0, 0, 1};
 }
 
@@ -456,20 +452,19 @@ Calibration parse_opencv_calibration(std::string_view text, const std::filesyste
                             : values_of_yaml(text, file);
   Calibration c;
   c.camera_matrix = matrix_in(values, file);
-  std::string key;
-  const Value* distortion = find(values, kDistortion, &key, file);
-  if (distortion != nullptr) c.distortion = numbers(*distortion, key, file);
+  const Value* distortion = find(values, kDistortion);
+  if (distortion != nullptr) c.distortion = numbers(*distortion);
   c.size = size_in(values, file);
-  expect_known_keys(values, file, c);
-  const std::optional<bool> is_fisheye = says_fisheye(values, file);
+  expect_known_keys(values, c);
+  const std::optional<bool> is_fisheye = says_fisheye(values);
   // cv2.fisheye.calibrate gives four coefficients, and cv2.calibrateCamera may.
   if (!is_fisheye && c.distortion.size() == 4 &&
-      std::any_of(c.distortion.begin(), c.distortion.end(), [](double k) { return k != 0; }))
-    throw Error(key +
+      std::ranges::any_of(c.distortion, [](double k) { return k != 0; }))
+    throw Error(distortion->key +
                     " holds four numbers, and nothing says of which model; expected "
                     "`fisheye_model: 1` (cv2.fisheye) or `fisheye_model: 0` "
                     "(cv2.calibrateCamera) beside them",
-                {file, distortion->line});
+                distortion->where);
   c.fisheye = is_fisheye.value_or(false);
   return c;
 }
