@@ -256,24 +256,10 @@ std::vector<Guess> guesses(const std::array<Channel, 3>& channels) {
 }
 
 // Mean and spread of the hypotheses, each weighted by exp(-cost / 2).
-ColourEstimate mean_of(const std::vector<Guess>& guesses) {
-  const double least = std::ranges::min(guesses, {}, &Guess::cost).cost;
-  double total = 0;
-  std::array<double, 3> sum{}, squares{};
-  for (const Guess& guess : guesses) {
-    const double p = std::exp(0.5 * (least - guess.cost));
-    total += p;
-    for (std::size_t c = 0; c < 3; ++c) {
-      sum[c] += p * guess.per_km[c];
-      squares[c] += p * guess.per_km[c] * guess.per_km[c];
-    }
-  }
-  ColourEstimate result;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double mean = sum[c] / total;
-    result[c] = {mean, std::sqrt(std::max(0.0, squares[c] / total - mean * mean))};
-  }
-  return result;
+Estimate mean_of(const std::vector<Guess>& guesses, std::size_t channel) {
+  std::vector<measured::Likely> all;
+  for (const Guess& guess : guesses) all.push_back({guess.per_km[channel], -0.5 * guess.cost});
+  return measured::mean_of(all);
 }
 
 // Mean over the sectors that the views cover.
@@ -312,9 +298,9 @@ std::optional<SeenAgain> fading_of_same_ground(const GroundSeen& seen,
     channel.try_all(altitude_m);
   }
   SeenAgain result;
-  result.extinction_per_km = mean_of(guesses(channels));
+  const std::vector<Guess> all = guesses(channels);
   for (std::size_t c = 0; c < 3; ++c) {
-    Estimate& extinction = result.extinction_per_km[c];
+    Estimate& extinction = result.extinction_per_km[c] = mean_of(all, c);
     result.airlight[c] =
         airlight_ahead(channels[c], channels[c].system(extinction.value * altitude_m * 1e-3));
     extinction.sigma = std::hypot(extinction.sigma, kFlightScatter * extinction.value);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <airtruth/calibration.h>
 
@@ -47,5 +50,22 @@ class Measured {
  private:
   std::variant<Value, NotMeasured> held_;
 };
+
+// A value that a quantity may have, and the logarithm of its likelihood; any constant may be added.
+struct Likely {
+  double value = 0, log_likelihood = 0;
+};
+// The mean of at least one such value, each weighted by its likelihood, and the spread about it.
+inline Estimate mean_of(const std::vector<Likely>& all) {
+  const double best = std::ranges::max(all, {}, &Likely::log_likelihood).log_likelihood;
+  double total = 0, sum = 0, squares = 0;
+  for (const Likely& one : all) {
+    const double likelihood = std::exp(one.log_likelihood - best);
+    total += likelihood, sum += likelihood * one.value;
+    squares += likelihood * one.value * one.value;
+  }
+  const double mean = sum / total;
+  return {mean, std::sqrt(std::max(0.0, squares / total - mean * mean))};
+}
 
 }  // namespace airtruth::measured

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "calibration/optics/edge_fit.h"
@@ -35,22 +34,7 @@ constexpr double kHalfWeightExcess = 0.5;
 // correlated errors.
 constexpr double kIndependentResiduals = 6;
 
-struct Likely {
-  double value = 0, log_likelihood = 0;
-};
-
-Estimate mean_of(const std::vector<Likely>& all) {
-  double best = std::numeric_limits<double>::lowest();
-  for (const Likely& one : all) best = std::max(best, one.log_likelihood);
-  double total = 0, sum = 0, squares = 0;
-  for (const Likely& one : all) {
-    const double likelihood = std::exp(one.log_likelihood - best);
-    total += likelihood, sum += likelihood * one.value;
-    squares += likelihood * one.value * one.value;
-  }
-  const double mean = sum / total;
-  return {mean, std::sqrt(std::max(0.0, squares / total - mean * mean))};
-}
+using measured::Likely;
 
 Estimate from_logarithm(const Estimate& e) {
   return {std::exp(e.value), std::exp(e.value) * e.sigma};
