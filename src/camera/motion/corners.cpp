@@ -151,12 +151,13 @@ std::vector<unsigned char> tracked(const Pyramid& from,
 
 }  // namespace
 
-std::vector<std::optional<cv::Point2f>> follow(const Pyramid& from,
-                                               const Pyramid& to,
-                                               const cv::Mat& allowed,
-                                               const std::vector<cv::Point2f>& corners) {
-  std::vector<std::optional<cv::Point2f>> places(corners.size());
-  if (corners.empty()) return places;
+Tracks followed(const Pyramid& from,
+                const Pyramid& to,
+                const cv::Mat& allowed,
+                const Tracks& tracks) {
+  Tracks going_on;
+  const std::vector<cv::Point2f>& corners = tracks.now;
+  if (corners.empty()) return going_on;
   std::vector<cv::Point2f> moved, back = corners;
   const auto found = tracked(from, to, corners, moved, kPyramidLevels, 0);
   const auto found_back = tracked(to, from, moved, back, kBackLevels, cv::OPTFLOW_USE_INITIAL_FLOW);
@@ -166,19 +167,9 @@ std::vector<std::optional<cv::Point2f>> follow(const Pyramid& from,
                         p.y <= static_cast<float>(allowed.rows - 1);
     if (found[i] == 0 || found_back[i] == 0 || !inside) continue;
     if (cv::norm(back[i] - corners[i]) > kForthAndBackPx) continue;
-    if (allowed.at<unsigned char>(static_cast<int>(p.y), static_cast<int>(p.x)) != 0) places[i] = p;
+    if (allowed.at<unsigned char>(static_cast<int>(p.y), static_cast<int>(p.x)) == 0) continue;
+    going_on.begun.push_back(tracks.begun[i]), going_on.now.push_back(p);
   }
-  return places;
-}
-
-Tracks followed(const Pyramid& from,
-                const Pyramid& to,
-                const cv::Mat& allowed,
-                const Tracks& tracks) {
-  Tracks going_on;
-  const auto places = follow(from, to, allowed, tracks.now);
-  for (std::size_t i = 0; i < places.size(); ++i)
-    if (places[i]) going_on.begun.push_back(tracks.begun[i]), going_on.now.push_back(*places[i]);
   return going_on;
 }
 
@@ -255,17 +246,18 @@ std::vector<Step> Steps::fine(const Levels& now, const Guess& guess) const {
 }
 
 std::vector<Step> Steps::alone(const Levels& now, const cv::Mat& allowed) const {
-  // OpenCV's positions are those of the middles of samples.
+  // OpenCV's positions are those of the middles of samples; those of corners are whole numbers.
   constexpr float kHalf = 0.5f;
   std::vector<cv::Point2f> from;
   for (const LevelPatch& corner : corners_)
     from.emplace_back(static_cast<float>(corner.middle().x()) - kHalf,
                       static_cast<float>(corner.middle().y()) - kHalf);
-  const auto to =
-      airtruth::motion::follow(pyramid_of(levels_.front()), pyramid_of(now.front()), allowed, from);
+  const auto& [begun, to] =
+      followed(pyramid_of(levels_.front()), pyramid_of(now.front()), allowed, {from, from});
   std::vector<Step> steps;
   for (std::size_t i = 0; i < to.size(); ++i)
-    if (to[i]) steps.push_back({corners_[i].middle(), Pixel(to[i]->x + kHalf, to[i]->y + kHalf)});
+    steps.push_back(
+        {Pixel(begun[i].x + kHalf, begun[i].y + kHalf), Pixel(to[i].x + kHalf, to[i].y + kHalf)});
   return steps;
 }
 

@@ -28,18 +28,13 @@ std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
                                         const cv::Mat& allowed,
                                         const std::function<bool(const cv::Point2f&)>& is_far = {});
 
-// Tracks corners by pyramidal Lucas-Kanade, and tracks them back as a check. Returns the place of
-// each; empty where it was not found inside the allowed area, or did not return to its place.
-std::vector<std::optional<cv::Point2f>> follow(const Pyramid& from,
-                                               const Pyramid& to,
-                                               const cv::Mat& allowed,
-                                               const std::vector<cv::Point2f>& corners);
-
 // Corners where their tracks begin, and their places in a later picture.
 struct Tracks {
   std::vector<cv::Point2f> begun, now;
 };
-// The tracks from the picture `from` on to the picture `to`, without those that end there.
+// The tracks from the picture `from` on to the picture `to`, by pyramidal Lucas-Kanade, which
+// tracks them back as a check. A track ends where the corner was not found inside the allowed area,
+// or did not return to its place.
 Tracks followed(const Pyramid& from,
                 const Pyramid& to,
                 const cv::Mat& allowed,
