@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include <Eigen/Cholesky>
-
-#include "calibration/air/ground_seen.h"
 
 namespace airtruth::air {
 namespace {

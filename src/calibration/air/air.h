@@ -12,7 +12,6 @@
 #include "calibration/air/same_ground.h"
 #include "calibration/air/sky_curve.h"
 #include "calibration/measured/measured.h"
-#include "camera/horizon/horizon.h"
 #include "camera/lens/lens.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"

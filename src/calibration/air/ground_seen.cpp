@@ -6,7 +6,6 @@
 #include <map>
 #include <utility>
 
-#include "calibration/air/extinction.h"
 #include "foundation/image/colour.h"
 
 namespace airtruth::air {

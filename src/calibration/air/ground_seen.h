@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "calibration/air/extinction.h"
 #include "calibration/air/ground_track.h"
+#include "calibration/air/sky_curve.h"
 #include "camera/lens/lens.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/tone_curve.h"

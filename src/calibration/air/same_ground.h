@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include "calibration/air/extinction.h"
 #include "calibration/air/ground_seen.h"
 
 // Measures extinction from ground that is seen again at a shorter range. The method compares each

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "camera/motion/motion.h"
 #include "foundation/base/median.h"
 #include "foundation/image/colour.h"
 

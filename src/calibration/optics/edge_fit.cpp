@@ -2,7 +2,6 @@
 #include "calibration/optics/edge_fit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Dense>

@@ -10,7 +10,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/optics/edge_fit.h"
-#include "foundation/geometry/transform.h"
 #include "foundation/image/colour.h"
 #include "foundation/image/mats.h"
 

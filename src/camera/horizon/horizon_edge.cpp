@@ -8,15 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "camera/lens/lens.h"
-#include "foundation/geometry/transform.h"
 #include "foundation/image/colour.h"
 
 namespace airtruth::horizon {
 namespace {
-
-// A picture resampled to elevation over azimuth about a guessed horizon, where planes near the
-// guess are sines.
 
 // The planes near the guess among which a horizon is sought.
 struct Sweep {
@@ -159,12 +154,10 @@ Unrolled unroll(const Sight& sight, const Quaternion& cam_from_level, const Swee
 
 // The least number of azimuths at which the line lies in the picture. Chosen by judgement.
 constexpr int kMinColumns = 30;
-// A step of luma beyond this many code values adds little, so that weak steps all along a line
-// outweigh a strong step in one place.
+// A step of luma beyond this many code values adds little.
 constexpr float kLargestStep = 6;
 
-// The first guess lies below the horizon, because haze hides up to a dozen degrees of ground. The
-// search therefore reaches higher than it reaches down.
+// It reaches higher than down, because haze hides up to a dozen degrees of ground.
 constexpr Sweep kWide{-6, 16, 0.2, 0.6, 6};
 constexpr Sweep kNarrow{-1.5, 1.5, 0.04, 0.2, 1};
 // One line only, for its sharpness.

@@ -7,7 +7,6 @@
 #include <map>
 #include <optional>
 #include <sstream>
-#include <string>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>

@@ -2,10 +2,8 @@
 #include "camera/lens/lens.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,6 @@
 #include "camera/motion/motion.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/motion/rotation_fit.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <Eigen/SVD>

@@ -2,13 +2,11 @@
 #include "camera/motion/shake.h"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <span>
 
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "camera/motion/motion.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::motion {
