@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
@@ -246,10 +247,8 @@ std::vector<SteepPlace> steep_places(const cv::Mat& grey) {
       if (const int g = across[x] * across[x] + down[x] * down[x]; g > kMinGradient * kMinGradient)
         strong.push_back({g, {x, y}});
   }
-  std::sort(strong.begin(), strong.end(), [](const auto& a, const auto& b) {
-    return a.first != b.first
-               ? a.first > b.first
-               : std::pair(a.second.y, a.second.x) < std::pair(b.second.y, b.second.x);
+  std::ranges::sort(strong, {}, [](const auto& one) {
+    return std::tuple(-one.first, one.second.y, one.second.x);
   });
   std::vector<SteepPlace> places;
   places.reserve(strong.size());

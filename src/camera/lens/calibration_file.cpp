@@ -31,10 +31,9 @@ constexpr double kLargestCoefficient = 1e12;
 std::string shown(double number) { return fmt::format("{:g}", number); }
 
 void check_matrix(const Calibration& c, const std::string& file) {
-  for (double value : c.camera_matrix)
-    if (!std::isfinite(value))
-      throw Error("the camera matrix holds a number that is not finite", {file});
   const auto& m = c.camera_matrix;
+  if (!std::ranges::all_of(m, [](double value) { return std::isfinite(value); }))
+    throw Error("the camera matrix holds a number that is not finite", {file});
   if (std::abs(m[1]) > 1e-9)
     throw Error("the camera matrix has a skew of " + std::to_string(m[1]) +
                     "; expected 0 (no lens model here has skew)",
@@ -73,18 +72,10 @@ std::vector<double> trimmed(std::vector<double> distortion, bool fisheye, const 
                       (fisheye ? " of a fisheye" : " (thin prism or tilt)") +
                       " is not 0; no lens model here has it",
                   {file});
-  std::size_t size = std::min(distortion.size(), most);
-  if (!fisheye) {
-    const auto zero_from = [&](std::size_t i) {
-      return std::all_of(distortion.begin() + static_cast<std::ptrdiff_t>(std::min(i, size)),
-                         distortion.begin() + static_cast<std::ptrdiff_t>(size),
-                         [](double k) { return k == 0; });
-    };
-    size = size <= 4 || zero_from(4) ? 4 : size == 5 || zero_from(5) ? 5 : 8;
-  } else {
-    size = 4;
-  }
-  distortion.resize(size, 0.0);
+  distortion.resize(most, 0.0);
+  std::size_t used = most;
+  while (used > 4 && distortion[used - 1] == 0) --used;
+  distortion.resize(used > 5 ? 8 : used);
   return distortion;
 }
 
@@ -255,7 +246,6 @@ std::string opencv_calibration(const Lens& lens, const std::string& note) {
   const bool fisheye = std::holds_alternative<Fisheye>(lens.model());
   std::string line = note;
   std::replace_if(line.begin(), line.end(), is_control, ' ');
-  // OpenCV's (0, 0) is the centre of the first pixel; airtruth's is its corner.
   const Pixel centre = pixel_of(facts.principal_point_px) - Pixel::Constant(0.5);
   const std::vector<double> matrix = {
       facts.focal_px[0], 0, centre.x(), 0, facts.focal_px[1], centre.y(), 0, 0, 1};

@@ -41,7 +41,7 @@ std::optional<Pixel> project(const Pinhole& lens, const Vector3& p, const Field&
   if (!(p.z() > 0)) return std::nullopt;
   const Pixel pixel(lens.focal_px.x() * p.x() / p.z() + lens.principal_point_px.x(),
                     lens.focal_px.y() * p.y() / p.z() + lens.principal_point_px.y());
-  if (!std::isfinite(pixel.x()) || !std::isfinite(pixel.y())) return std::nullopt;
+  if (!pixel.allFinite()) return std::nullopt;
   return pixel;
 }
 
@@ -293,14 +293,12 @@ constexpr double kLeastField_rad = radians(0.5);  // chosen: far below that of a
 
 std::string number(double x) { return fmt::format("{:g}", x); }
 
-bool finite(const Pixel& p) { return std::isfinite(p.x()) && std::isfinite(p.y()); }
-
 void validate(const Pixel& focal_px, const Pixel& centre_px, ImageSize size) {
   if (size.width <= 0 || size.height <= 0) throw Error("the lens has no image size");
-  if (!finite(focal_px) || focal_px.x() <= 0 || focal_px.y() <= 0)
+  if (!focal_px.allFinite() || focal_px.x() <= 0 || focal_px.y() <= 0)
     throw Error("focal_px is [" + number(focal_px.x()) + ", " + number(focal_px.y()) +
                 "]; expected two positive numbers");
-  if (!finite(centre_px)) throw Error("principal_point_px is not finite; expected two numbers");
+  if (!centre_px.allFinite()) throw Error("principal_point_px is not finite; expected two numbers");
 }
 
 template <typename Distorting>
@@ -366,7 +364,7 @@ std::optional<Pixel> Lens::pixel_from_cam(const Vector3& p_in_cam) const {
 }
 
 std::optional<Vector3> Lens::ray_from_pixel(const Pixel& pixel) const {
-  if (!finite(pixel)) return std::nullopt;
+  if (!pixel.allFinite()) return std::nullopt;
   return std::visit([&](const auto& lens) { return unproject(lens, pixel, field_); }, model_);
 }
 
