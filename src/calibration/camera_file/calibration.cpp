@@ -23,7 +23,6 @@ const QuantityKey& key_of(std::string_view name) {
 // A number as text, with four significant digits.
 std::string shown(double value) { return fmt::format("{:.4g}", value); }
 
-// The origin of the value in words.
 std::string source_words(const Calibration& c, const Quantity& quantity) {
   if (!quantity.source.empty()) return quantity.source;
   return c.clips > 1 ? "the clips' own" : "the clip's own";
@@ -36,7 +35,6 @@ std::string array_of(const std::vector<Estimate>& values, bool errors) {
   return values.size() == 1 ? text : "[" + text + "]";
 }
 
-// If not every frame gives a horizon: the reason.
 std::string horizon_line(const Calibration& c) {
   if (!c.no_horizon.empty()) return "# horizon: not measured: " + c.no_horizon + "\n";
   if (!c.horizon_note.empty()) return "# horizon: " + c.horizon_note + "\n";
@@ -57,7 +55,6 @@ std::string head_of(const Calibration& c) {
   return text + horizon_line(c);
 }
 
-// The lines of one quantity.
 std::string lines_of(const Calibration& c, const QuantityKey& key) {
   const Quantity& quantity = c.quantities.*key.member;
   if (!quantity.is_measured())

@@ -32,8 +32,7 @@ Mean weighted_mean(const std::vector<Estimate>& all, double between) {
   return mean;
 }
 
-// The variance between measurements under which chi-square has its expected value (Paule and Mandel
-// 1982).
+// That under which chi-square has its expected value (join.h).
 double variance_between(const std::vector<Estimate>& all) {
   const double expected = double(all.size()) - 1;
   double low = 0, high = 0;
@@ -60,7 +59,6 @@ void fill_errors(std::vector<Estimate>& all) {
     if (!(e.sigma > 0)) e.sigma = usual;
 }
 
-// The value of one clip.
 struct ClipValue {
   Estimate value;
   std::string clip;

@@ -13,13 +13,11 @@ using plot::Series;
 
 constexpr plot::Style kMeasured{plot::kColours[0]}, kFitted{plot::kColours[2]};
 
-// A plot without data says so.
 Plot or_not_measured(Plot plot, bool is_measured) {
   if (!is_measured) plot.title += ": not measured";
   return plot;
 }
 
-// Standard deviation of the noise over brightness.
 Plot noise_plot(const std::vector<sensor::NoisePoint>& points) {
   Plot plot{.title = "noise of luma",
             .x = {.label = "luma, 0 to 1", .min = 0, .max = 1},
@@ -30,7 +28,7 @@ Plot noise_plot(const std::vector<sensor::NoisePoint>& points) {
   return or_not_measured(std::move(plot), !points.empty());
 }
 
-// The profile of a sharp edge, measured and fitted. Heights beyond the axis are drawn at its end.
+// Heights beyond the axis are drawn at its end.
 Plot edge_plot(const optics::EdgeProfile& edge) {
   // Ends of the axis, in heights of the step: room for what sharpening adds below 0 and above 1.
   constexpr double kLowest = -0.3, kHighest = 1.3;
@@ -49,7 +47,6 @@ Plot edge_plot(const optics::EdgeProfile& edge) {
   return plot;
 }
 
-// Pitch and roll of the camera by the horizon.
 Plot horizon_plot(const Calibration& c) {
   Plot plot{.title = "horizon",
             .x = {.label = "frame", .min = 0, .max = std::max(1.0, double(c.frames))},
@@ -64,7 +61,6 @@ Plot horizon_plot(const Calibration& c) {
   return or_not_measured(std::move(plot), !c.horizons.empty());
 }
 
-// A frame with its sky tinted.
 Plot sky_plot(const Calibration& c) {
   Plot plot{.title = c.sky_picture ? "sky, tinted red" : "sky: no horizon found"};
   plot.picture = c.sky_picture ? &*c.sky_picture : nullptr;

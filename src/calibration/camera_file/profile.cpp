@@ -40,7 +40,6 @@ constexpr double kOwnShare = 0.95;
 constexpr double kMaxDifferenceInErrors = 3;
 
 std::vector<CameraProfile> read_library(std::string_view text) {
-  // The line before each profile of the table (profile_table()).
   constexpr std::string_view kHead = "profile,";
   std::vector<CameraProfile> profiles;
   while (text.starts_with(kHead)) {
@@ -100,9 +99,7 @@ void join(Calibration& c,
   const double share = own_share(own, prior);
   const double off = std::abs(own.value - prior.value);
   const bool contradicts = off > kMaxDifferenceInErrors * std::hypot(own.sigma, prior.sigma);
-  // A camera that differs that much from all others is not one of them.
   if (share == 1 || (contradicts && profile.name.empty())) return;
-  // Edges of the world bound the spread of the camera from above (optics/edges.h).
   if (key == kPointSpread && own.value > prior.value && !contradicts) {
     put(c, key, prior);
     quantity.source =

@@ -132,10 +132,8 @@ std::optional<double> length_of(const cv::Mat& still,
   return std::sqrt(found);
 }
 
-// The derivative of evenly spaced samples at index k, in pixels per sample. The filter is the ideal
-// differentiator (-1)^(j + 1) / j under a Hann window, which is accurate to near the Nyquist
-// frequency. A plain difference would lose half of the speed of a camera shake at 10 Hz in a video
-// of 30 frames/s. Empty within 12 samples of either end.
+// The derivative of evenly spaced samples at index k, in pixels per sample, by the differentiator
+// of shake.h, which is accurate to near the Nyquist frequency. Empty within kReach of either end.
 std::optional<Pixel> rate_at(const std::vector<Pixel>& places, std::size_t k) {
   // Half the length of the differentiator, frames.
   constexpr int kReach = 12;

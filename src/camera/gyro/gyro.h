@@ -17,9 +17,8 @@ struct GyroSample {
   Vector3 rate_radps = Vector3::Zero();
 };
 
-// One packet of a GoPro's telemetry (GPMF: key, type, size and count, then values, big-endian,
-// nested in DEVC and STRM). The samples are spread evenly over [begin_s, end_s). The result is
-// empty where the packet has no GYRO or is damaged.
+// One packet of a GoPro's telemetry (gpmf.h). The samples are spread evenly over [begin_s, end_s).
+// The result is empty where the packet has no GYRO or is damaged.
 std::vector<GyroSample> gyro_from_gpmf(std::span<const std::uint8_t> packet,
                                        double begin_s,
                                        double end_s);

@@ -105,7 +105,7 @@ class Lens {
   double max_angle_rad() const { return field_.max_angle_rad; }
   // Pixels per radian on the axis: the mean of fx and fy.
   double focal_px() const;
-  // "pinhole", "brown_conrady" or "fisheye".
+  // That of its ModelKind.
   const char* name() const;
   // The full field of view through the principal point along rows and along columns, in degrees.
   double horizontal_fov_deg() const;
@@ -120,8 +120,7 @@ class Lens {
 // A lens as files state it: lens_of(facts_of(lens)) maps each ray to the same pixel as the lens
 // does.
 struct Facts {
-  // "pinhole", "brown_conrady" or "fisheye".
-  std::string model;
+  std::string model;  // the name of a ModelKind
   std::array<double, 2> focal_px{};
   std::array<double, 2> principal_point_px{};
   // A pinhole's is empty.

@@ -105,12 +105,11 @@ std::optional<ModelFit> fit_within(const Tracks& tracks, cv::Size image, double 
   return fit;
 }
 
-// Fits the plane map from the key frame: RANSAC (Fischler and Bolles 1981), then least squares on
-// the inliers (Levenberg-Marquardt). The fit is a homography where the hull of the inliers covers
-// enough of the image (the square root of its share of the area is at least 0.35). Otherwise, for
-// example with clouds along a horizon, it is a similarity, since a homography from a thin band of
-// points extrapolates badly. The result is empty where there are fewer than kMinInliers inliers, or
-// where the map is no motion that a camera makes between two key frames.
+// Fits the plane map from the key frame (motion.h; least squares by Levenberg-Marquardt). The fit
+// is a homography where the hull of the inliers covers enough of the image (kMinSpan). Otherwise,
+// for example with clouds along a horizon, it is a similarity, since a homography from a thin band
+// of points extrapolates badly. The result is empty where there are fewer than kMinInliers inliers,
+// or where the map is no motion that a camera makes between two key frames.
 std::optional<ModelFit> fit_model(const Tracks& tracks, cv::Size image) {
   if (static_cast<int>(tracks.begun.size()) < kMinInliers) return std::nullopt;
   // A plane map is not exact for a wide lens or near ground, so a second fit with a larger limit
