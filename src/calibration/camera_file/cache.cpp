@@ -10,62 +10,50 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Keys of texts that belong to no quantity alone.
-constexpr const char* kHorizon = "horizon";
-// The keys that a cached calibration has beyond those of kQuantityKeys.
-constexpr const char* kReadoutDirection = "shutter.readout";
-constexpr const char* kDownwards = "shutter.downwards_s";
-
 Json json_of(const Calibration& c) {
-  Json values = Json::object(), missing = Json::object(), notes = Json::object();
-  const auto add = [](Json& object, const char* key, const std::string& text) {
-    if (!text.empty()) object[key] = text;
-  };
+  Json quantities;
   for (const QuantityKey& key : kQuantityKeys) {
     const Quantity& quantity = c.quantities.*key.member;
-    Json list = Json::array();
-    for (const Estimate& e : quantity.values) list.push_back({e.value, e.sigma});
-    if (!list.empty()) values[key.name] = list;
-    add(missing, key.name, quantity.missing);
-    add(notes, key.name, quantity.note);
+    Json values = Json::array();
+    for (const Estimate& e : quantity.values) values.push_back({e.value, e.sigma});
+    quantities[key.name] = {
+        {"values", values}, {"missing", quantity.missing}, {"note", quantity.note}};
   }
-  if (c.downwards_s) values[kDownwards] = {c.downwards_s->value, c.downwards_s->sigma};
-  add(missing, kHorizon, c.no_horizon);
-  add(notes, kHorizon, c.horizon_note);
-  add(notes, kReadoutDirection, c.readout_direction);
-  return {{"width", c.width},
-          {"height", c.height},
-          {"frames", c.frames},
-          {"frame_rate_hz", c.frame_rate_hz},
-          {"lens", c.lens},
-          {"values", values},
-          {"missing", missing},
-          {"notes", notes},
-          {"yaw_from_first_deg", c.yaw_from_first_deg}};
+  Json json = {{"width", c.width},
+               {"height", c.height},
+               {"frames", c.frames},
+               {"frame_rate_hz", c.frame_rate_hz},
+               {"lens", c.lens},
+               {"quantities", quantities},
+               {"readout_direction", c.readout_direction},
+               {"no_horizon", c.no_horizon},
+               {"horizon_note", c.horizon_note},
+               {"yaw_from_first_deg", c.yaw_from_first_deg}};
+  if (c.downwards_s) json["downwards_s"] = {c.downwards_s->value, c.downwards_s->sigma};
+  return json;
 }
+
+Estimate estimate_from(const Json& pair) { return {pair.at(0), pair.at(1)}; }
 
 Calibration calibration_from_json(const Json& json) {
   Calibration c;
-  c.width = json.at("width");
-  c.height = json.at("height");
-  c.frames = json.at("frames");
-  c.frame_rate_hz = json.at("frame_rate_hz");
-  c.lens = json.at("lens").get<std::string>();
-  const Json &values = json.at("values"), &missing = json.at("missing"), &notes = json.at("notes");
+  json.at("width").get_to(c.width);
+  json.at("height").get_to(c.height);
+  json.at("frames").get_to(c.frames);
+  json.at("frame_rate_hz").get_to(c.frame_rate_hz);
+  json.at("lens").get_to(c.lens);
   for (const QuantityKey& key : kQuantityKeys) {
+    const Json& kept = json.at("quantities").at(key.name);
     Quantity& quantity = c.quantities.*key.member;
-    for (const Json& estimate : values.value(key.name, Json::array()))
-      quantity.values.push_back({estimate.at(0).get<double>(), estimate.at(1).get<double>()});
-    quantity.missing = missing.value(key.name, "");
-    quantity.note = notes.value(key.name, "");
+    for (const Json& pair : kept.at("values")) quantity.values.push_back(estimate_from(pair));
+    kept.at("missing").get_to(quantity.missing);
+    kept.at("note").get_to(quantity.note);
   }
-  if (values.contains(kDownwards))
-    c.downwards_s = {values[kDownwards].at(0).get<double>(),
-                     values[kDownwards].at(1).get<double>()};
-  c.no_horizon = missing.value(kHorizon, "");
-  c.horizon_note = notes.value(kHorizon, "");
-  c.readout_direction = notes.value(kReadoutDirection, "");
-  c.yaw_from_first_deg = json.at("yaw_from_first_deg").get<std::vector<double>>();
+  if (json.contains("downwards_s")) c.downwards_s = estimate_from(json["downwards_s"]);
+  json.at("readout_direction").get_to(c.readout_direction);
+  json.at("no_horizon").get_to(c.no_horizon);
+  json.at("horizon_note").get_to(c.horizon_note);
+  json.at("yaw_from_first_deg").get_to(c.yaw_from_first_deg);
   return c;
 }
 
