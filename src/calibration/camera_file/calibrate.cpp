@@ -224,14 +224,10 @@ class Session {
     quantities().codec_step.values = {{median(steps), half_spread(steps)}};
   }
 
-  // 0 if it is not known.
-  double codec_step() const {
-    const Quantity& step = result_.quantities.codec_step;
-    return step.is_measured() ? step.value().value : 0;
-  }
-
   void take_edges() {
-    const auto found = edges_.result(codec_step());
+    const Quantity& step = quantities().codec_step;
+    const double codec_step = step.is_measured() ? step.value().value : 0;  // 0: not known
+    const auto found = edges_.result(codec_step);
     put(quantities().point_spread, found, &optics::StepResponse::point_spread_px);
     put(quantities().sharpening, found, &optics::StepResponse::sharpening);
     put(quantities().sharpening_radius, found, &optics::StepResponse::sharpening_px);
@@ -246,7 +242,7 @@ class Session {
                     result_.edge.spread_px,
                     result_.edge.edges);
     put(quantities().vertical_spread, found->vertical_spread_px);
-    put(quantities().chroma_spread, edges_.chroma(*found, codec_step()));
+    put(quantities().chroma_spread, edges_.chroma(*found, codec_step));
   }
 
   // A share of the frame interval as a time.
@@ -387,7 +383,7 @@ Calibration calibrate_camera(const std::vector<fs::path>& clips, const Calibrate
   check_ranges(options);
   if (clips.empty()) throw Error("there is no clip; expected one video or more");
   if (!options.profile.empty()) camera_profile(options.profile);  // its name is known
-  check_joinable(clips, {});
+  check_joinable(clips);
   const video::StreamInfo info = video::Reader(clips[0], {.threads = 1}).info();
   const CameraProfile profile = profile_of(options.profile, info);
   check_size(profile, info.width, info.height);

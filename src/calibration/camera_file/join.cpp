@@ -139,11 +139,11 @@ Pooled pooled(std::vector<Estimate> all) {
   return {{wider.value, std::sqrt(between + 1 / wider.weights)}, false};
 }
 
-void check_joinable(const std::vector<std::filesystem::path>& clips, const Warn& warn) {
+void check_joinable(const std::vector<std::filesystem::path>& clips) {
   // Largest relative difference of frame rates that counts as rounding: 29.97 against 30.
   constexpr double kMaxRateDifference = 0.01;
-  const auto info_of = [&](const std::filesystem::path& clip) {
-    return video::Reader(clip, {.threads = 1}, warn).info();
+  const auto info_of = [](const std::filesystem::path& clip) {
+    return video::Reader(clip, {.threads = 1}).info();
   };
   const video::StreamInfo first = info_of(clips.at(0));
   for (std::size_t i = 1; i < clips.size(); ++i) {

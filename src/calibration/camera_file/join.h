@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "calibration/camera_file/calibration.h"
-#include "foundation/base/log.h"
 
 // Combines the calibrations of several clips of one camera into one.
 namespace airtruth::camera_file {
@@ -25,7 +24,7 @@ struct Pooled {
 Pooled pooled(std::vector<Estimate> all);
 
 // Throws Error if the clips differ in picture size, or in frame rate by more than a hundredth.
-void check_joinable(const std::vector<std::filesystem::path>& clips, const Warn& warn);
+void check_joinable(const std::vector<std::filesystem::path>& clips);
 
 // Combines the values that belong to the camera: optics, sensor and shutter. Air and light belong
 // to one flight and are left out. Values on which clips contradict one another have a

@@ -58,14 +58,6 @@ std::string with_error(const Estimate& e) {
   return fmt::format("{:.3g} +- {:.2g}", e.value, e.sigma);
 }
 
-// What was measured, where it is known: the quantity is 0 within two errors.
-Estimate signed_readout(const Calibration& c) {
-  if (c.downwards_s) return *c.downwards_s;
-  Estimate readout = c.quantities.readout.value();
-  if (c.readout_direction == "up") readout.value = -readout.value;
-  return readout;
-}
-
 void put(Calibration& c, const std::string& key, Estimate value) {
   if (key == kReadout) {
     c.readout_direction = value.value < 0 ? "up" : "down";
@@ -95,7 +87,9 @@ void join(Calibration& c,
     put(c, key, prior);
     return;
   }
-  const Estimate own = key == kReadout ? signed_readout(c) : quantity.value();
+  // The quantity of a readout is 0 within two errors, and has no sign.
+  const bool is_signed = key == kReadout && c.downwards_s;
+  const Estimate own = is_signed ? *c.downwards_s : quantity.value();
   const double share = own_share(own, prior);
   const double off = std::abs(own.value - prior.value);
   const bool contradicts = off > kMaxDifferenceInErrors * std::hypot(own.sigma, prior.sigma);

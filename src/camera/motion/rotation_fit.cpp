@@ -73,13 +73,6 @@ Agreement agreement(const std::vector<Bearings>& bearings, const Matrix3& r, dou
   return all;
 }
 
-std::vector<Bearings> far_of(const std::vector<Bearings>& bearings) {
-  std::vector<Bearings> result;
-  for (const Bearings& b : bearings)
-    if (b.near.is_far) result.push_back(b);
-  return result;
-}
-
 // The number of pairs after which one of two inliers was among them with a probability of
 // kConfidence, where this share of the points are inliers (Fischler and Bolles 1981, equation 4).
 int trials_for(double inlier_share) {
@@ -155,7 +148,9 @@ std::optional<Start> start_of(const std::vector<Bearings>& bearings,
                               double limit_rad,
                               int min_inliers,
                               std::uint64_t seed) {
-  const std::vector<Bearings> far = far_of(bearings);
+  std::vector<Bearings> far;
+  for (const Bearings& b : bearings)
+    if (b.near.is_far) far.push_back(b);
   const bool some_near = far.size() < bearings.size();
   if (some_near && spread_of(far, std::vector<bool>(far.size(), true)) >= kMinSpreadRad)
     if (const auto found = consensus(far, limit_rad, 2 * min_inliers, seed))
