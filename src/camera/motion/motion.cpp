@@ -92,7 +92,7 @@ namespace {
 constexpr std::string_view kToTheEnd = "to the end\n";  // of the video
 constexpr std::string_view kUntilThere = "until there\n";
 
-// The head of a packed frame; the numbers of its rotation or homography follow.
+// The head of a packed frame; the numbers of its rotation or homography follow in Eigen's order.
 struct PackedHead {
   double time_s;
   double rms_px;
@@ -121,7 +121,7 @@ FrameMotion unpacked(const char* bytes, std::int64_t frame) {
                      .state = static_cast<State>(head.state)};
   motion.begins_anew = head.begins_anew;
   if (head.is_rotation)
-    motion.rotation = Quaternion(numbers[0], numbers[1], numbers[2], numbers[3]);
+    motion.rotation = Quaternion(numbers.data());
   else
     motion.frame_from_reference = Eigen::Map<const Homography>(numbers.data());
   return motion;
@@ -171,16 +171,10 @@ void pack(const FrameMotion& motion, std::string& packed) {
   head.is_rotation = motion.rotation.has_value();
   head.begins_anew = motion.begins_anew;
   packed.append(reinterpret_cast<const char*>(&head), sizeof head);
-  const auto add = [&](const double* numbers, std::size_t count) {
-    packed.append(reinterpret_cast<const char*>(numbers), count * sizeof(double));
-  };
-  if (motion.rotation) {
-    const Quaternion& q = *motion.rotation;
-    const std::array<double, kRotationNumbers> numbers = {q.w(), q.x(), q.y(), q.z()};
-    add(numbers.data(), numbers.size());
-  } else {
-    add(motion.frame_from_reference.data(), kHomographyNumbers);
-  }
+  const double* numbers =
+      motion.rotation ? motion.rotation->coeffs().data() : motion.frame_from_reference.data();
+  packed.append(reinterpret_cast<const char*>(numbers),
+                packed_size(head.is_rotation) - sizeof head);
 }
 
 std::optional<std::vector<FrameMotion>> cached(const disk_cache::Cache& cache,
