@@ -52,12 +52,9 @@ constexpr double kMinSpreadDeg = 10, kMaxSpreadDeg = 45;
 // bright edge of a bank of clouds is found in its place, with a ratio of up to 1.5.
 constexpr double kMinCostRatio = 1.6;
 
-// Light that arrives from one direction above the horizon.
 struct SkySample {
-  // Unit vector, north-east-down.
-  Vector3 direction;
-  // Luminance, linear.
-  double light = 0;
+  Vector3 direction;  // unit vector, north-east-down
+  double light = 0;   // luminance, linear
 };
 
 using Terms = Eigen::Matrix<double, 8, 1>;
@@ -127,7 +124,6 @@ Search over_grid(const std::vector<SkySample>& samples) {
   return search;
 }
 
-// Searches the neighbours of the best direction at ever finer spacings.
 void refine(Search& search, const std::vector<SkySample>& samples) {
   for (double step = kFirstStepDeg; step > kLastStepDeg; step *= kStepRatio) {
     const auto [a0, e0] = search.best;

@@ -214,9 +214,9 @@ class GroundMaps {
   }
 
   std::size_t size() const { return spectra_.size(); }
-  // Registers the ground of view `from` in view `to` by masked correlation (Padfield 2012, "Masked
-  // object registration in the Fourier domain"). The search covers the displacements within `reach`
-  // of `expected`, by row and by column. Empty where no displacement gives a positive correlation.
+  // Registers the ground of view `from` in view `to` (ground_track.h). The search covers the
+  // displacements within `reach` of `expected`, by row and by column. Empty where no displacement
+  // gives a positive correlation.
   std::optional<Laid> laid_over(std::size_t from,
                                 std::size_t to,
                                 const Eigen::Vector2d& expected,

@@ -50,8 +50,7 @@ class EdgeMeter {
   // Cameras and codecs keep less colour detail than the grid of chroma samples could hold: on the
   // clips of data/camera-profiles, edges that luma crosses within 2 px are 6 to 9 px wide in Cb and
   // Cr. The error is the scatter of the differences divided by the square root of the largest
-  // number of such edges in one frame: edges of other frames may be the same edges again. Not
-  // measured where there are fewer than 12 steps.
+  // number of such edges in one frame. Not measured where there are fewer than 12 steps.
   Measured<Estimate> chroma(const StepResponse& response, double codec_step = 0) const;
   // The mean profile of the edges that the last result() used.
   const EdgeProfile& profile() const { return profile_; }

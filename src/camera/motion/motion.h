@@ -40,8 +40,7 @@ enum class State {
   kBridged,
   // The scene changed: nothing links the frame to the frames before it. Its motion is extrapolated.
   kCut,
-  // Homographies only: the camera has turned so far from the first frame that no plane map holds
-  // both pictures (ReachGuard). The motion is that of the last frame within reach.
+  // Homographies only: beyond the reach of the first frame's plane (ReachGuard).
   kTurnedAway,
 };
 // The names of the states in motion.csv.
