@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <airtruth/calibration.h>
@@ -33,22 +33,15 @@ struct NotMeasured {
 
 // A `Value`, or the reason why there is none. Reading the value of one without is undefined.
 template <typename Value>
-class Measured {
+class Measured : public std::optional<Value> {
  public:
-  Measured(Value value) : held_(std::move(value)) {}
-  Measured(NotMeasured reason) : held_(std::move(reason)) {}
-
-  explicit operator bool() const { return std::holds_alternative<Value>(held_); }
-  const Value& operator*() const { return *std::get_if<Value>(&held_); }
-  const Value* operator->() const { return std::get_if<Value>(&held_); }
+  Measured(Value value) : std::optional<Value>(std::move(value)) {}
+  Measured(NotMeasured reason) : why_(std::move(reason.why)) {}
   // Empty if there is a value.
-  std::string why() const {
-    const auto* reason = std::get_if<NotMeasured>(&held_);
-    return reason != nullptr ? reason->why : std::string();
-  }
+  const std::string& why() const { return why_; }
 
  private:
-  std::variant<Value, NotMeasured> held_;
+  std::string why_;
 };
 
 // A value that a quantity may have, and the logarithm of its likelihood; any constant may be added.
