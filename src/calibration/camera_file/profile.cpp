@@ -21,18 +21,11 @@ constexpr std::array<const char*, 5> kOptics = {kPointSpread,
                                                 "optics.sharpening",
                                                 "optics.sharpening_px",
                                                 "sensor.chroma_spread_px"};
-// The keys that a profile may have: all values that belong to the camera and not to one flight.
-constexpr std::array<const char*, 9> kProfileKeys = {kPointSpread,
-                                                     "optics.vertical_spread_px",
-                                                     "optics.sharpening",
-                                                     "optics.sharpening_px",
-                                                     "sensor.noise_gain",
-                                                     "sensor.noise_floor",
-                                                     "sensor.noise_correlation_px",
-                                                     "sensor.chroma_spread_px",
-                                                     "shutter.readout_s"};
 // The key of the readout time, whose sign is its direction.
 constexpr const char* kReadout = "shutter.readout_s";
+// The other keys that a profile may have: values that belong to the camera and not to one flight.
+constexpr std::array<const char*, 4> kBesideOptics = {
+    "sensor.noise_gain", "sensor.noise_floor", "sensor.noise_correlation_px", kReadout};
 // Share of the clip's own weight from which on a value counts as the clip's own; below 1 minus this
 // share it counts as the profile's.
 constexpr double kOwnShare = 0.95;
@@ -132,7 +125,8 @@ CameraProfile parse_camera_profile(std::string_view text, const std::string& nam
       profile.tags[cells[1]] = cells[2];
       continue;
     }
-    const bool known = std::ranges::find(kProfileKeys, cells[0]) != kProfileKeys.end();
+    const bool known = std::ranges::find(kOptics, cells[0]) != kOptics.end() ||
+                       std::ranges::find(kBesideOptics, cells[0]) != kBesideOptics.end();
     if (cells.size() != (known ? 4U : 2U))
       throw Error(fmt::format("has {} cells; expected key,value,error,clips or camera,WORDS, "
                               "width,PX, height,PX, clips,NUMBER, tag,KEY,BEGINNING",

@@ -116,11 +116,6 @@ struct CurvePoint {
   double x, y, blocks;
 };
 
-// The curve: variance in linear light = gain x + floor.
-struct NoiseCurve {
-  Estimate gain, floor;
-};
-
 // One weighted least-squares fit, whose parameters are not negative.
 struct LineFit {
   double gain = 0, floor = 0;
@@ -149,9 +144,12 @@ LineFit line_fit(const std::vector<CurvePoint>& points, const LineFit* before) {
   return fit;
 }
 
+// The curve: variance in linear light = gain x + floor.
+//
 // Texture only increases the measured variance. Points that lie above the curve by more than the
 // others therefore lose weight in each round; points below the curve keep theirs.
-NoiseCurve noise_curve(const std::vector<CurvePoint>& points) {
+NoiseMeter::Result noise_curve(const std::vector<CurvePoint>& points,
+                               const Estimate& correlation_px) {
   // Rounds of reweighting.
   constexpr int kRounds = 30;
   LineFit fit = line_fit(points, nullptr);
@@ -170,7 +168,8 @@ NoiseCurve noise_curve(const std::vector<CurvePoint>& points) {
   const double least = fit.gain > 0 || fit.floor > 0 ? kLeastScatter : 0;
   const double scale = std::max(least, chi / std::max<double>(1, double(points.size()) - 2));
   return {{fit.gain, fit.det > 0 ? std::sqrt(scale * fit.sw / fit.det) : fit.gain},
-          {fit.floor, fit.det > 0 ? std::sqrt(scale * fit.sxx / fit.det) : fit.floor}};
+          {fit.floor, fit.det > 0 ? std::sqrt(scale * fit.sxx / fit.det) : fit.floor},
+          correlation_px};
 }
 
 }  // namespace
@@ -250,8 +249,7 @@ Measured<NoiseMeter::Result> NoiseMeter::result() const {
     const double y = p.sigma_codes * p.sigma_codes / (codes * codes);
     curve.push_back({x, y, double(std::min(p.blocks, kMaxBlocksOfWeight))});
   }
-  const NoiseCurve fitted = noise_curve(curve);
-  return Result{fitted.gain, fitted.floor, correlation_px()};
+  return noise_curve(curve, correlation_px());
 }
 
 Estimate NoiseMeter::correlation_px() const {
