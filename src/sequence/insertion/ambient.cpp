@@ -87,20 +87,15 @@ std::vector<std::optional<Vector3>> rays_of(const lens::ImageSize& size,
   return rays;
 }
 
-// The part of the picture whose blocks count more.
-std::optional<PixelBox> surroundings_of(const std::optional<PixelBox>& near, int step) {
-  if (!near) return std::nullopt;
-  const int margin = std::max(2 * step, 2 * std::max(near->width, near->height));
-  return wider(*near, margin);
-}
-
 // `rays`: as rays_of().
 std::vector<Block> blocks_of(const Glance& glance,
                              const image::Mask* own_aircraft,
                              const std::vector<std::optional<Vector3>>& rays,
                              const Quaternion& world_from_cam,
                              const std::optional<PixelBox>& near) {
-  const std::optional<PixelBox> around = surroundings_of(near, grid_step(glance.size));
+  std::optional<PixelBox> around;  // where blocks count more
+  if (near)
+    around = wider(*near, 2 * std::max({grid_step(glance.size), near->width, near->height}));
   std::vector<Block> blocks;
   blocks.reserve(rays.size());
   std::size_t i = 0;
@@ -131,8 +126,6 @@ float overcast_seen(const Block& block, const Skies& skies, float share) {
 
 // A smaller change of the light, as the logarithm of a ratio, comes from motion in the picture.
 constexpr float kJump = 0.04F;
-
-bool is_jump(float change) { return std::abs(std::log(change)) >= kJump; }
 
 // The middle of what the blocks become, by channel; 1 where there are too few that are neither dark
 // nor near white.
@@ -425,7 +418,7 @@ void AmbientEstimator::follow_exposure(const std::vector<Rgb>& blocks) {
   blocks_before_ = blocks;
   if (!smooth_) return;
   for (std::size_t c = 0; c < 3; ++c) {
-    if (!is_jump(change[c])) continue;
+    if (std::abs(std::log(change[c])) < kJump) continue;
     for (const auto light : kSmoothed) ((*smooth_).*light)[c] *= change[c];
   }
 }

@@ -92,22 +92,6 @@ Stated stated_occluder(const scene::Occluder& occluder,
   return stated;
 }
 
-std::vector<double> ranges_of(const setup::Moment& moment) {
-  std::vector<double> ranges;
-  for (const auto& state : moment.states)
-    ranges.push_back(state ? (state->position_in_world - moment.camera.position_in_world).norm()
-                           : 0);
-  return ranges;
-}
-
-// The range of the farthest intruder in view; 0 without one.
-double farthest_m(const setup::Moment& moment, const std::vector<double>& ranges_m) {
-  double farthest = 0;
-  for (std::size_t i = 0; i < ranges_m.size(); ++i)
-    if (moment.search[i]) farthest = std::max(farthest, ranges_m[i]);
-  return farthest;
-}
-
 struct Horizon {
   Vector3 up_in_cam;
   Homography nominal_from_frame = Homography::Identity();
@@ -170,12 +154,17 @@ Occluders::InFrame Occluders::in_frame(const setup::Moment& moment,
                                        const image::Picture& picture) const {
   InFrame result;
   auto& [occluders, ranges_m] = result.occlusion;
-  ranges_m = ranges_of(moment);
+  double farthest_m = 0;  // of the intruders in view
+  for (std::size_t i = 0; i < moment.states.size(); ++i) {
+    const auto& state = moment.states[i];
+    ranges_m.push_back(state ? (state->position_in_world - moment.camera.position_in_world).norm()
+                             : 0);
+    if (moment.search[i]) farthest_m = std::max(farthest_m, ranges_m.back());
+  }
   if (impl_->own != nullptr) occluders.push_back(composite::own_aircraft(*impl_->own));
-  const double farthest = farthest_m(moment, ranges_m);
   std::optional<Horizon> horizon;
   for (const Stated& one : impl_->stated) {
-    if (!(one.range_m < farthest)) continue;
+    if (!(one.range_m < farthest_m)) continue;
     if (one.still || !one.series.empty()) {
       occluders.push_back({one.range_m, impl_->cover(one, moment.frame)});
       continue;

@@ -69,8 +69,6 @@ double perez(double sine, double cosine_from_sun) {
          (1 + c * std::exp(d * std::acos(cosine_from_sun)) + e * cosine_from_sun * cosine_from_sun);
 }
 
-double clear_at_zenith(double sun_elevation_deg) { return perez(1, sine(sun_elevation_deg)); }
-
 // Moon and Spencer 1942.
 double overcast_at(double sine) { return (1 + 2 * sine) / 3; }
 
@@ -88,7 +86,8 @@ struct UnderAnySun {
 
 Skies skies_of(const Vector3& to_sun_in_world) {
   static const UnderAnySun under_any_sun;
-  const double zenith = clear_at_zenith(degrees(std::asin(sine_of_elevation(to_sun_in_world))));
+  const double sun_elevation_deg = degrees(std::asin(sine_of_elevation(to_sun_in_world)));
+  const double zenith = perez(1, sine(sun_elevation_deg));
   const auto clear = [&](const Vector3& d) {
     if (d.z() > 0) return 0.0;
     return perez(sine_of_elevation(d), cosine_between(d, to_sun_in_world)) / zenith;

@@ -59,10 +59,6 @@ annotation::EvisionFrame evision_frame(const annotation::Frame& truth,
   return frame;
 }
 
-std::size_t aircraft_of(const scene::Scene& scene) {
-  return static_cast<std::size_t>(std::ranges::count_if(scene.intruders, scene::is_aircraft));
-}
-
 // Adds an input or output file with its SHA-256 to a list of sequence.json.
 void add_file(nlohmann::ordered_json& list, const fs::path& name, const std::string& sha256) {
   list.push_back({{"name", name.string()}, {"sha256", sha256}});
@@ -99,7 +95,8 @@ class Outputs {
                  .encoder = scene.output.encoder,
                  .encoder_where = scene.output.encoder_where}),
         truth_(folder / "truth.jsonl", std::ios::binary),
-        aircraft_(aircraft_of(scene)),
+        aircraft_(
+            static_cast<std::size_t>(std::ranges::count_if(scene.intruders, scene::is_aircraft))),
         sheet_(scene.name, info.frame_count_estimate) {
     check_truth("create");
     const std::size_t files = std::max<std::size_t>(1, aircraft_);
@@ -433,18 +430,14 @@ StageTimes times_of(const Clocks& clocks) {
   return times;
 }
 
-std::optional<tbb::global_control> thread_limit(int threads) {
-  if (threads <= 0) return std::nullopt;
-  return std::optional<tbb::global_control>(std::in_place,
-                                            tbb::global_control::max_allowed_parallelism,
-                                            static_cast<std::size_t>(threads));
-}
-
 }  // namespace
 
 Summary render(const scene::Scene& scene, const fs::path& out, const Options& options) {
   Clocks clocks;
-  const auto limit = thread_limit(options.threads);
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(options.threads));
   const fs::path folder = out / scene.name;
   RunFiles files;
   for (const fs::path& file : setup::files_read(scene)) files.reads(file);

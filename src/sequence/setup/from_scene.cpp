@@ -27,20 +27,16 @@
 namespace airtruth::setup {
 namespace {
 
-std::vector<double> filled(std::vector<double> distortion, std::size_t size) {
-  if (distortion.size() < size) distortion.resize(size, 0.0);
-  return distortion;
-}
-
 lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
   const Pixel focal = lens.focal_px.value_or(Pixel(0, 0));
   const Pixel centre = lens.principal_point_px.value_or(Pixel(size.width / 2.0, size.height / 2.0));
   lens::Facts facts{enum_name(lens.model),
                     {focal.x(), focal.y()},
                     {centre.x(), centre.y()},
-                    filled(lens.distortion, 4),
+                    lens.distortion,
                     size.width,
                     size.height};
+  if (facts.distortion.size() < 4) facts.distortion.resize(4, 0.0);
   if (lens.vertical_fov_deg) {
     const lens::Lens plain = lens.model == lens::ModelKind::kFisheye
                                  ? lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size)

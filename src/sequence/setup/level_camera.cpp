@@ -17,11 +17,6 @@
 namespace airtruth::setup {
 namespace {
 
-bool states_attitude(const scene::Camera& camera) {
-  return camera.path_file || camera.attitude_yaw_pitch_roll_deg ||
-         (camera.log && !read_log(*camera.log).attitudes.empty());
-}
-
 // Every kLevelEvery-th frame of the beginning, up to a cut, with its rotation since the first.
 std::vector<camera_file::SampledFrame> sampled_frames(video::Reader reader,
                                                       const lens::Lens& lens,
@@ -49,7 +44,9 @@ std::string level_words(const std::string& why) {
 }  // namespace
 
 std::optional<YawPitchRoll> level_attitude(const scene::Camera& camera) {
-  if (states_attitude(camera)) return std::nullopt;
+  if (camera.path_file || camera.attitude_yaw_pitch_roll_deg ||
+      (camera.log && !read_log(*camera.log).attitudes.empty()))
+    return std::nullopt;
   const auto first = camera_path(camera).at(0);
   return YawPitchRoll{first ? yaw_pitch_roll(first->world_from_body).yaw_deg : 0, 0, 0};
 }

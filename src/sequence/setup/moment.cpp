@@ -125,24 +125,16 @@ constexpr double kWingShare = 3 / 7.6 * 0.5;
 // Distance at which a point stands for the sun's direction: parallax is below 1e-6 of a pixel.
 constexpr double kSunM = 1e12;
 
-std::optional<Pixel> sun_pixel(const projection::Sight& sight, const Vector3& to_sun_in_world) {
-  const Rigid world_from_cam = sight.cam_from_world.inverse();
-  return projection::pixel_from_world(sight, world_from_cam.translation + kSunM * to_sun_in_world);
-}
-
-std::optional<Pixel> axis_pixel(const projection::Sight& sight) {
-  const Rigid world_from_cam = sight.cam_from_world.inverse();
-  return projection::pixel_from_world(sight, world_from_cam * Vector3(0, 0, kSunM));
-}
-
 // A point on the line from the picture of the lens's axis to the sun. Reflections between the
 // surfaces of a lens lie on it, whatever the lens (Hullin et al. 2011, "Physically-based real-time
 // lens flare rendering", section 3).
 std::optional<Pixel> glint_pixel(const scene::LensMark& mark,
                                  const projection::Sight& sight,
                                  const Vector3& to_sun_in_world) {
-  const auto sun = sun_pixel(sight, to_sun_in_world);
-  const auto axis = axis_pixel(sight);
+  const Rigid world_from_cam = sight.cam_from_world.inverse();
+  const auto sun =
+      projection::pixel_from_world(sight, world_from_cam.translation + kSunM * to_sun_in_world);
+  const auto axis = projection::pixel_from_world(sight, world_from_cam * Vector3(0, 0, kSunM));
   if (!sun || !axis) return std::nullopt;
   return Pixel(*axis + mark.along * (*sun - *axis));
 }
