@@ -27,11 +27,6 @@ constexpr double kHeightStepFt = 100;
 
 double nearest_step(double value, double step) { return step * std::round(value / step); }
 
-struct Loaded {
-  scene::Intruder intruder;  // with waypoints in place of what is seen
-  Actor actor;
-};
-
 // The aircraft as labels name it. A model file is named from the scene's folder, and one that does
 // not lie below it by its own name and content: the same scene gives the same labels wherever it
 // lies, however its path is spelt.
@@ -59,19 +54,19 @@ Actor actor_of(const scene::Intruder& intruder,
 }
 
 // An aircraft that is to be seen at a width is placed by its usual length, loaded for the airspeed
-// and height there, and placed and loaded once more by its own shape.
-Loaded load_actor(const scene::Intruder& intruder,
-                  const World& world,
-                  const FrameNear& frame_near,
-                  SharedInputs& types,
-                  const Warn& warn,
-                  const std::stop_token& stop) {
-  if (intruder.seen.empty()) return {intruder, actor_of(intruder, world, types, warn, stop)};
+// and height there, and placed and loaded once more by its own shape. The intruder then has
+// waypoints in place of what is seen.
+Actor load_actor(scene::Intruder& intruder,
+                 const World& world,
+                 const FrameNear& frame_near,
+                 SharedInputs& types,
+                 const Warn& warn,
+                 const std::stop_token& stop) {
+  if (intruder.seen.empty()) return actor_of(intruder, world, types, warn, stop);
   const Actor first =
       actor_of(placed_as_seen(intruder, world, frame_near, nullptr), world, types, warn, stop);
-  const scene::Intruder placed =
-      placed_as_seen(intruder, world, frame_near, &first.type->silhouette);
-  return {placed, actor_of(placed, world, types, {}, stop)};
+  intruder = placed_as_seen(intruder, world, frame_near, &first.type->silhouette);
+  return actor_of(intruder, world, types, {}, stop);
 }
 
 model::Mesh mesh_of(const scene::Distractor& one) {
@@ -146,8 +141,8 @@ World load_world(const scene::Scene& scene,
   World world = without_actors(scene, size, warn);
   SharedInputs own;
   SharedInputs& types = shared != nullptr ? *shared : own;
-  for (const scene::Intruder& intruder : scene.intruders)
-    world.actors.push_back(load_actor(intruder, world, steady_frame, types, warn, stop).actor);
+  for (scene::Intruder intruder : scene.intruders)
+    world.actors.push_back(load_actor(intruder, world, steady_frame, types, warn, stop));
   return world;
 }
 
@@ -158,12 +153,9 @@ void place_seen(scene::Scene& scene,
                 SharedInputs* shared) {
   SharedInputs own;
   SharedInputs& types = shared != nullptr ? *shared : own;
-  for (std::size_t i = 0; i < scene.intruders.size(); ++i) {
-    if (scene.intruders[i].seen.empty()) continue;
-    Loaded loaded = load_actor(scene.intruders[i], world, frame_near, types, {}, stop);
-    world.actors[i] = std::move(loaded.actor);
-    scene.intruders[i] = std::move(loaded.intruder);
-  }
+  for (std::size_t i = 0; i < scene.intruders.size(); ++i)
+    if (!scene.intruders[i].seen.empty())
+      world.actors[i] = load_actor(scene.intruders[i], world, frame_near, types, {}, stop);
 }
 
 void check_camera_path(const World& world, const video::StreamInfo& info, const Warn& warn) {
