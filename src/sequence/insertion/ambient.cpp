@@ -2,10 +2,8 @@
 #include "sequence/insertion/ambient.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "foundation/base/error.h"
 #include "foundation/base/median.h"

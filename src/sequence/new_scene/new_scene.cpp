@@ -8,7 +8,6 @@
 #include <cmath>
 #include <map>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

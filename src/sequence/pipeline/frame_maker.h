@@ -13,8 +13,6 @@
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/moment.h"
 #include "sequence/setup/motion_source.h"
-#include "sequence/setup/shared_inputs.h"
-#include "sequence/setup/world.h"
 
 // The way of a frame through a run: the stages of one frame, from top to bottom. render() runs the
 // stages in a pipeline and writes files; FrameByFrame runs them for a caller who takes the frames

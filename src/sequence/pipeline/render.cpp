@@ -8,7 +8,6 @@
 #include <fstream>
 #include <optional>
 #include <set>
-#include <string>
 #include <vector>
 
 #include <airtruth/version.h>
@@ -34,7 +33,6 @@
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
 #include "scene/scene/camera_keys.h"
-#include "scene/scene/scene.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/insertion/paint.h"
 #include "sequence/pipeline/encounter_record.h"

@@ -14,12 +14,8 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "scene/scene/camera_keys.h"
-#include "sequence/insertion/ambient.h"
-#include "sequence/insertion/paint.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/level_camera.h"
-#include "sequence/setup/motion_source.h"
-#include "sequence/setup/world.h"
 
 namespace airtruth::pipeline {
 namespace {

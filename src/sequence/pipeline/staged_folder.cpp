@@ -10,7 +10,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
-#include "foundation/base/files.h"
 
 namespace airtruth::pipeline {
 namespace {

@@ -14,7 +14,6 @@
 #include "sequence/insertion/frame_truth.h"
 #include "sequence/insertion/paint.h"
 #include "sequence/pipeline/resolved_scene.h"
-#include "sequence/preview/rows.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/shared_inputs.h"
 #include "show/drawing/draw.h"

@@ -10,7 +10,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
-#include "foundation/base/files.h"
 #include "foundation/geometry/box.h"
 #include "foundation/image/colour.h"
 #include "foundation/json/json_object.h"

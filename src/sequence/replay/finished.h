@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "foundation/base/files.h"
-#include "foundation/base/log.h"
 #include "foundation/image/picture.h"
 #include "labels/annotation/truth.h"
 #include "scene/scene/scene.h"

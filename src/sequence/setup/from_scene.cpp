@@ -8,19 +8,15 @@
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "camera/lens/calibration_file.h"
 #include "encounter/placement/by_approach.h"
-#include "foundation/base/error.h"
 #include "foundation/base/names.h"
-#include "foundation/geometry/transform.h"
 #include "picture/video/metadata.h"
 #include "picture/video/reader.h"
-#include "scene/flight_log/flight_log.h"
 #include "scene/flight_log/local_path.h"
 #include "scene/trajectory/heading.h"
 

@@ -8,11 +8,8 @@
 #include <fmt/ranges.h>
 
 #include "camera/lens/calibration_file.h"
-#include "camera/lens/lens.h"
-#include "camera/motion/estimator.h"
 #include "camera/motion/shake.h"
 #include "foundation/base/error.h"
-#include "foundation/base/files.h"
 #include "picture/video/metadata.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/still.h"
