@@ -48,14 +48,6 @@ GreyPtr first_mask(const fs::path& file, const lens::ImageSize& size, const Warn
   return mask;
 }
 
-GreyPtr still_mask(const fs::path& file, const lens::ImageSize& size, const Warn& to_warn) {
-  GreyPtr mask = first_mask(file, size, to_warn);
-  if (std::ranges::max(mask->samples) == 0)
-    throw Error("is black all over: it would hide nothing; expected white where it hides",
-                {file.string()});
-  return mask;
-}
-
 std::function<float(int, int)> cover_of(GreyPtr mask) {
   return [mask = std::move(mask)](int x, int y) {
     return static_cast<float>(mask->samples[index_in(mask->width, x, y)]) / 255.0F;
@@ -78,7 +70,10 @@ Stated stated_occluder(const scene::Occluder& occluder,
   if (!occluder.mask) return stated;
   const auto images = video::numbered_images(*occluder.mask);
   if (!images) {
-    stated.still = still_mask(*occluder.mask, size, to_warn);
+    stated.still = first_mask(*occluder.mask, size, to_warn);
+    if (std::ranges::max(stated.still->samples) == 0)
+      throw Error("is black all over: it would hide nothing; expected white where it hides",
+                  {occluder.mask->string()});
     return stated;
   }
   stated.series = images->files;
