@@ -57,11 +57,6 @@ class FrameMaker {
   // Keeps the measured motion for the next run, after the last frame.
   void store_motion() { resolved_.motion->store(); }
 
-  // True where draw() and compose() belong to the thread that opened the scene: OpenGL's context
-  // belongs to one thread.
-  bool is_of_one_thread() const {
-    return resolved_.scene.composite.method == scene::CompositeMethod::kChromaKey;
-  }
   bool composes_in_order() const { return painter_.is_in_order(); }
 
   const ResolvedScene& resolved() const { return resolved_; }

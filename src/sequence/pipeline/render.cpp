@@ -375,7 +375,8 @@ Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, C
   // long run comes to hold them all at some time, and takes no less time.
   const std::size_t in_flight = static_cast<std::size_t>(threads) + 2;
   // OpenGL's context belongs to one thread: the chroma-key method runs in an arena of one.
-  const bool one_thread = maker.is_of_one_thread();
+  const bool one_thread =
+      maker.resolved().scene.composite.method == scene::CompositeMethod::kChromaKey;
   tbb::task_arena arena(one_thread ? 1 : threads);
   const auto in_order = tbb::filter_mode::serial_in_order;
   const auto draw_mode = one_thread ? in_order : tbb::filter_mode::parallel;
