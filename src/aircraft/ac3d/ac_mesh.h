@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -14,6 +15,16 @@
 
 namespace airtruth::ac3d {
 
+// How a picture stands for the surface on which it is.
+struct Sampling {
+  bool repeat_u = true;
+  bool repeat_v = true;
+  // A texel of at least this alpha is opaque and any other is absent; 0: all are opaque. Empty:
+  // alpha is opacity.
+  std::optional<float> alpha_cutoff;
+  auto operator<=>(const Sampling&) const = default;
+};
+
 // Triangles of a model file that share one material, in the file's own frame, whatever its format.
 struct Batch {
   std::vector<Eigen::Vector3f> positions;
@@ -25,11 +36,7 @@ struct Batch {
   std::string texture;                 // the file's name for it; empty: none
   int texture_line = 0;                // where the file names it; 0: unknown
   int picture = -1;  // index into RawModel::pictures, in place of `texture`: inside the file
-  bool repeat_u = true;
-  bool repeat_v = true;
-  // A texel of at least this alpha is opaque and any other is absent; 0: all are opaque. Empty:
-  // alpha is opacity.
-  std::optional<float> alpha_cutoff;
+  Sampling sampling;
 };
 
 // The triangles of one object, one batch per material in the order of the materials. Polygons

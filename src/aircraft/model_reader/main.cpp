@@ -7,12 +7,10 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
-#include <optional>
 #include <set>
 #include <span>
 #include <sstream>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -275,7 +273,7 @@ class SceneReader {
       cutoff = kDefaultAlphaCutoff;
     const float alpha = batch.srgb.opacity;
     batch.srgb.opacity = alpha >= cutoff ? 1.0f : 0.0f;
-    batch.alpha_cutoff = alpha > 0 ? cutoff / alpha : 0;
+    batch.sampling.alpha_cutoff = alpha > 0 ? cutoff / alpha : 0;
   }
 
   void read_texture(const aiMaterial& material, ac3d::Batch& batch, unsigned& uv_channel) {
@@ -286,10 +284,12 @@ class SceneReader {
       if (material.GetTexture(kind, 0, &path, nullptr, &uv_channel, nullptr, nullptr, modes) !=
           aiReturn_SUCCESS)
         continue;
-      batch.repeat_u = modes[0] == aiTextureMapMode_Wrap || modes[0] == aiTextureMapMode_Mirror;
-      batch.repeat_v = modes[1] == aiTextureMapMode_Wrap || modes[1] == aiTextureMapMode_Mirror;
+      batch.sampling.repeat_u =
+          modes[0] == aiTextureMapMode_Wrap || modes[0] == aiTextureMapMode_Mirror;
+      batch.sampling.repeat_v =
+          modes[1] == aiTextureMapMode_Wrap || modes[1] == aiTextureMapMode_Mirror;
       if (const aiTexture* inside = scene_.GetEmbeddedTexture(path.C_Str())) {
-        batch.picture = picture_of(*inside, batch);
+        batch.picture = picture_of(*inside, batch.sampling);
       } else {
         batch.texture = path.C_Str();
       }
@@ -297,20 +297,14 @@ class SceneReader {
     }
   }
 
-  int picture_of(const aiTexture& texture, const ac3d::Batch& batch) {
-    const auto key = std::make_tuple(&texture, batch.repeat_u, batch.repeat_v, batch.alpha_cutoff);
+  int picture_of(const aiTexture& texture, const ac3d::Sampling& sampling) {
+    const std::pair key(&texture, sampling);
     const auto known = picture_of_texture_.find(key);
     if (known != picture_of_texture_.end()) return known->second;
     const std::string_view bytes(reinterpret_cast<const char*>(texture.pcData), texture.mWidth);
     if (texture.mHeight != 0)
       throw Error("has a texture inside that is no file; expected PNG, JPEG, WebP or BMP");
-    const int index =
-        assembly_.add_picture(texture_file::read_picture(bytes, assembly_.picture_limits()),
-                              batch.repeat_u,
-                              batch.repeat_v,
-                              batch.alpha_cutoff);
-    picture_of_texture_[key] = index;
-    return index;
+    return picture_of_texture_[key] = assembly_.add_picture(bytes, sampling);
   }
 
   const aiScene& scene_;
@@ -318,7 +312,7 @@ class SceneReader {
   const wrapper::ModelFile& file_;
   std::string ending_;
   std::vector<std::string> names_;
-  std::map<std::tuple<const aiTexture*, bool, bool, std::optional<float>>, int> picture_of_texture_;
+  std::map<std::pair<const aiTexture*, ac3d::Sampling>, int> picture_of_texture_;
   bool has_vertex_colours_ = false;
   bool is_inverted_ = false;
 };

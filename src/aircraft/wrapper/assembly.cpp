@@ -79,40 +79,24 @@ Assembly::Assembly(ModelFiles& files) : files_(files) {
   model_.mesh.parts.push_back({.name = "airframe"});
 }
 
-texture_file::PictureLimits Assembly::picture_limits() const {
-  texture_file::PictureLimits limits;
-  limits.pixels = model::kMaxPixels - pixels_;
-  return limits;
-}
-
-int Assembly::add_picture(texture_file::Picture picture,
-                          bool repeat_u,
-                          bool repeat_v,
-                          std::optional<float> alpha_cutoff) {
-  for (std::size_t i = 3; alpha_cutoff && i < picture.rgba.size(); i += 4)
-    picture.rgba[i] = static_cast<float>(picture.rgba[i]) >= 255 * *alpha_cutoff ? 255 : 0;
+int Assembly::add_picture(std::string_view bytes, const ac3d::Sampling& sampling) {
+  texture_file::Picture picture =
+      texture_file::read_picture(bytes, {.pixels = model::kMaxPixels - pixels_});
+  const auto& cutoff = sampling.alpha_cutoff;
+  for (std::size_t i = 3; cutoff && i < picture.rgba.size(); i += 4)
+    picture.rgba[i] = static_cast<float>(picture.rgba[i]) >= 255 * *cutoff ? 255 : 0;
   pixels_ += picture.rgba.size() / 4;
   if (model_.pictures.size() >= model::kMaxPictures)
     throw Error("has more than " + std::to_string(model::kMaxPictures) + " textures");
-  model_.pictures.push_back({std::move(picture), repeat_u, repeat_v});
+  model_.pictures.push_back({std::move(picture), sampling.repeat_u, sampling.repeat_v});
   return static_cast<int>(model_.pictures.size()) - 1;
 }
 
-int Assembly::read_texture(const fs::path& path,
-                           bool repeat_u,
-                           bool repeat_v,
-                           std::optional<float> alpha_cutoff) {
-  const std::string key = path.string() + (repeat_u ? "|u" : "|") + (repeat_v ? "v" : "") +
-                          (alpha_cutoff ? fmt::format("|{}", *alpha_cutoff) : "");
+int Assembly::read_texture(const fs::path& path, const ac3d::Sampling& sampling) {
+  const std::pair key(path.string(), sampling);
   const auto known = picture_of_file_.find(key);
   if (known != picture_of_file_.end()) return known->second;
-  const int index =
-      add_picture(texture_file::read_picture(files_.read(path, kMaxPictureBytes), picture_limits()),
-                  repeat_u,
-                  repeat_v,
-                  alpha_cutoff);
-  picture_of_file_[key] = index;
-  return index;
+  return picture_of_file_[key] = add_picture(files_.read(path, kMaxPictureBytes), sampling);
 }
 
 void Assembly::warn(const std::string& text) {
@@ -151,8 +135,9 @@ int Assembly::texture_of(const ac3d::Batch& batch,
                 where);
   }
   try {
-    return read_texture(
-        path, replaced || batch.repeat_u, replaced || batch.repeat_v, batch.alpha_cutoff);
+    ac3d::Sampling sampling = batch.sampling;
+    if (replaced) sampling.repeat_u = sampling.repeat_v = true;
+    return read_texture(path, sampling);
   } catch (const Error& error) {
     throw Error("wants the texture " + files_.shown(path).string() + ", which " + error.message(),
                 where);

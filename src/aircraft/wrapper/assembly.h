@@ -3,8 +3,9 @@
 
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "aircraft/ac3d/ac_mesh.h"
@@ -45,28 +46,19 @@ class Assembly {
   // triangles, vertices or pixels exceed a limit.
   void add(const ac3d::Batch& batch, const PartChoice& choice, const ModelFile& file);
 
-  // Adds a picture from inside a model file and returns its index for Batch::picture. The last
-  // argument is that of the batch.
-  int add_picture(texture_file::Picture picture,
-                  bool repeat_u,
-                  bool repeat_v,
-                  std::optional<float> alpha_cutoff);
-  // The number of pixels that the limit still allows.
-  texture_file::PictureLimits picture_limits() const;
+  // Adds a picture from inside a model file and returns its index for Batch::picture.
+  int add_picture(std::string_view bytes, const ac3d::Sampling& sampling);
 
  private:
   void warn_of_texture(const std::string& name);
   int texture_of(const ac3d::Batch& batch, const PartChoice& choice, const ModelFile& file);
-  int read_texture(const fs::path& path,
-                   bool repeat_u,
-                   bool repeat_v,
-                   std::optional<float> alpha_cutoff);
+  int read_texture(const fs::path& path, const ac3d::Sampling& sampling);
   std::uint32_t material_of(const ac3d::Batch& batch, const PartChoice& choice, int texture);
   void add_vertices(const ac3d::Batch& batch, const Eigen::Affine3d& body_from_file);
 
   ModelFiles& files_;
   model::RawModel model_;
-  std::map<std::string, int> picture_of_file_;  // with its way of repeating and its cutoff
+  std::map<std::pair<std::string, ac3d::Sampling>, int> picture_of_file_;
   std::size_t pixels_ = 0;
   std::size_t triangles_ = 0;
 };
