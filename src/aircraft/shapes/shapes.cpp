@@ -100,11 +100,6 @@ std::vector<Rib> ribs_of(std::span<const Section> sections, float span, float ch
   return ribs;
 }
 
-// A positive turn about x lowers the right wing and raises the left one.
-model::Hinge hinge_at(const V& centre, float side, float rest_rad, float amplitude_rad, float lag) {
-  return {V(1, 0, 0), centre, -side * rest_rad, -side * amplitude_rad, lag};
-}
-
 struct WingMaterials {
   std::uint32_t above, below, tip_above, tip_below;
 };
@@ -115,18 +110,13 @@ void add_wing(MeshBuilder& builder,
               const WingMaterials& material) {
   const auto span = static_cast<float>(shape.span_m);
   const float chord = span / static_cast<float>(shape.aspect_ratio);
-  const model::Hinge shoulder =
-      hinge_at(V(kShoulderAhead * span, side * kShoulderOut * span, -kHingesAbove * span),
-               side,
-               kGlideRaised,
-               kStroke,
-               0);
-  const model::Hinge wrist =
-      hinge_at(V(kShoulderAhead * span, side * kWristOut * span, -kHingesAbove * span),
-               side,
-               kGlideWrist,
-               kWristStroke,
-               kWristLag);
+  // A positive turn about x lowers the right wing and raises the left one.
+  const auto hinge = [&](float out, float rest_rad, float amplitude_rad, float lag) {
+    const V centre(kShoulderAhead * span, side * out * span, -kHingesAbove * span);
+    return model::Hinge{V(1, 0, 0), centre, -side * rest_rad, -side * amplitude_rad, lag};
+  };
+  const model::Hinge shoulder = hinge(kShoulderOut, kGlideRaised, kStroke, 0);
+  const model::Hinge wrist = hinge(kWristOut, kGlideWrist, kWristStroke, kWristLag);
   model::Part part;
   part.name = side > 0 ? "right arm" : "left arm";
   part.centre_in_body = shoulder.centre_in_body;
