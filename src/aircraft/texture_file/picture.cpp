@@ -15,10 +15,6 @@
 namespace airtruth::texture_file {
 namespace {
 
-struct FreePng {
-  void operator()(png_image* image) const { png_image_free(image); }
-};
-
 void expect_png(int is_sound, const png_image& image) {
   if (is_sound == 0) throw Error(std::string("is a PNG file with a fault: ") + image.message);
 }
@@ -26,7 +22,8 @@ void expect_png(int is_sound, const png_image& image) {
 Picture read_png(std::string_view bytes, const PictureLimits& limits) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  const std::unique_ptr<png_image, FreePng> freed(&image);  // however the reading ends
+  // However the reading ends.
+  const std::unique_ptr<png_image, decltype(&png_image_free)> freed(&image, &png_image_free);
   expect_png(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), image);
   Picture picture = blank_picture(image.width, image.height, limits);
   image.format = PNG_FORMAT_RGBA;
@@ -37,16 +34,12 @@ Picture read_png(std::string_view bytes, const PictureLimits& limits) {
   return picture;
 }
 
-struct CloseJpeg {
-  void operator()(void* handle) const { tjDestroy(handle); }
-};
-
 [[noreturn]] void fail_jpeg(void* handle) {
   throw Error(std::string("is a JPEG file with a fault: ") + tjGetErrorStr2(handle));
 }
 
 Picture read_jpeg(std::string_view bytes, const PictureLimits& limits) {
-  const std::unique_ptr<void, CloseJpeg> handle(tjInitDecompress());
+  const std::unique_ptr<void, decltype(&tjDestroy)> handle(tjInitDecompress(), &tjDestroy);
   if (!handle) throw Error("is a JPEG file, for which libjpeg-turbo has no memory");
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
   const auto size = static_cast<unsigned long>(bytes.size());
