@@ -69,13 +69,6 @@ std::vector<track::Encounter> fitted(std::vector<track::Encounter> encounters,
   return {std::move(all)};
 }
 
-namespace {
-
-// The number of encounters is 32 bits wide in a waypoint file.
-constexpr std::size_t kMaxEncounters = 0xffffffff;
-
-}  // namespace
-
 std::string head_of(TracksFormat format, std::uint32_t encounters, std::uint32_t aircraft) {
   if (format == TracksFormat::kCsv) return encounter_csv_head();
   if (format == TracksFormat::kWaypoints) return waypoint_head(encounters, aircraft);
@@ -102,11 +95,6 @@ std::string bytes_of(const track::Encounter& encounter,
 void write_encounters(const fs::path& file, const std::vector<track::Encounter>& encounters) {
   check(!encounters.empty(), "there are encounters to write");
   const TracksFormat format = tracks_format_of(file);
-  if (encounters.size() > kMaxEncounters)
-    throw Error(
-        fmt::format(
-            "would hold {} encounters; expected up to {}", encounters.size(), kMaxEncounters),
-        {file.string()});
   const auto aircraft = static_cast<std::uint32_t>(encounters.front().aircraft.size());
   write_file(file, [&](const AddBytes& add) {
     add(head_of(format, static_cast<std::uint32_t>(encounters.size()), aircraft));
