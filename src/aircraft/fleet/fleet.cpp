@@ -28,20 +28,6 @@
 namespace airtruth::fleet {
 namespace {
 
-std::map<std::string, std::string> read_rows(std::string_view text) {
-  std::map<std::string, std::string> rows;
-  std::istringstream lines{std::string(text)};
-  std::string line;
-  std::getline(lines, line);  // the heading
-  while (std::getline(lines, line)) {
-    if (line.empty()) continue;
-    const auto comma = line.find(',');
-    check(comma != std::string::npos, "a row of what is left out has a name and a reason");
-    rows[line.substr(0, comma)] = line.substr(comma + 1);
-  }
-  return rows;
-}
-
 std::vector<fs::path> folders() {
   const char* stated = std::getenv("AIRTRUTH_AIRCRAFT_PATH");
   std::vector<fs::path> result;
@@ -185,8 +171,16 @@ std::string outcomes_of(const wrapper::Wrapper& wrapper) {
 }  // namespace
 
 const std::map<std::string, std::string>& left_out() {
-  static const std::map<std::string, std::string> rows = read_rows(left_out_table());
-  return rows;
+  static const std::map<std::string, std::string> reasons = [] {
+    std::map<std::string, std::string> by_name;
+    for (const std::string& row : rows_of(left_out_table())) {
+      const auto comma = row.find(',');
+      check(comma != std::string::npos, "a row of what is left out has a name and a reason");
+      by_name[row.substr(0, comma)] = row.substr(comma + 1);
+    }
+    return by_name;
+  }();
+  return reasons;
 }
 
 std::vector<Entry> list_aircraft() {

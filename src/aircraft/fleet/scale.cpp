@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -42,23 +41,21 @@ PublishedSize size_from(const std::string& line) {
   return size;
 }
 
-std::vector<PublishedSize> read_table(std::string_view text) {
-  std::vector<PublishedSize> sizes;
-  std::istringstream lines{std::string(text)};
-  std::string line;
-  std::getline(lines, line);  // the heading
-  while (std::getline(lines, line)) {
-    while (!line.empty() && line.back() == ',') line.pop_back();
-    if (!line.empty()) sizes.push_back(size_from(line));
-  }
-  return sizes;
-}
-
 }  // namespace
+
+std::vector<std::string> rows_of(std::string_view table) {
+  std::vector<std::string> rows = cells_of(table, '\n');
+  rows.erase(rows.begin());
+  return rows;
+}
 
 std::span<const PublishedSize> published_sizes() {
   static const std::vector<PublishedSize> sizes = [] {
-    std::vector<PublishedSize> all = read_table(size_table());
+    std::vector<PublishedSize> all;
+    for (std::string& row : rows_of(size_table())) {
+      row.erase(row.find_last_not_of(',') + 1);
+      all.push_back(size_from(row));
+    }
     for (const shapes::Airframe& made : shapes::airframes())
       all.push_back({{std::string(made.name) + "/*"}, std::string(made.size)});
     return all;
