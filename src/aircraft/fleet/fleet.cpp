@@ -28,6 +28,14 @@
 namespace airtruth::fleet {
 namespace {
 
+// FlightGear's data root for a folder of aircraft: the folder that holds its AI/Aircraft, or the
+// folder itself where its path has no such part.
+fs::path data_root_of(const fs::path& catalogue_folder) {
+  const fs::path whole = fs::absolute(catalogue_folder / "").lexically_normal().parent_path();
+  const fs::path above = whole.parent_path();
+  return whole.filename() == "Aircraft" && above.filename() == "AI" ? above.parent_path() : whole;
+}
+
 std::vector<fs::path> folders() {
   const char* stated = std::getenv("AIRTRUTH_AIRCRAFT_PATH");
   std::vector<fs::path> result;
@@ -275,12 +283,6 @@ std::vector<std::string> nearest_aircraft(const std::string& word, std::size_t c
   return names;
 }
 
-fs::path data_root_of(const fs::path& catalogue_folder) {
-  const fs::path whole = fs::absolute(catalogue_folder / "").lexically_normal().parent_path();
-  const fs::path above = whole.parent_path();
-  return whole.filename() == "Aircraft" && above.filename() == "AI" ? above.parent_path() : whole;
-}
-
 std::vector<std::string> liveries(const std::string& name) {
   std::vector<std::string> result;
   if (wrapper::is_model_file(name)) return result;
@@ -314,36 +316,28 @@ struct Source : confined::ModelPlace {
   bool from_debian = false;
 };
 
-// Whether Debian's package installs the file. If so, `below` receives its path below the data root.
-bool is_from_debian(const fs::path& file, fs::path& below) {
+// The place of a file in Debian's package; `otherwise` where the package does not install it.
+Source source_of(const fs::path& file, const confined::ModelPlace& otherwise) {
   std::error_code missing;
-  const fs::path real = fs::canonical(file, missing);
-  if (missing) return false;
-  below = real.lexically_relative(data_root_of(kDebianAircraft));
-  return !below.empty() && *below.begin() != "..";
-}
-
-Source source_of(const fs::path& file, const fs::path& folder, const fs::path& in_data_root) {
-  Source source{{folder, in_data_root, file.lexically_relative(folder)}};
-  if (folder.empty()) source.file = file;
-  if (fs::path below; is_from_debian(file, below))
-    source = {{data_root_of(kDebianAircraft), {}, below}, true};
-  return source;
+  const fs::path root = data_root_of(kDebianAircraft);
+  const fs::path below = fs::canonical(file, missing).lexically_relative(root);
+  if (missing || below.empty() || *below.begin() == "..") return {otherwise};
+  return {{root, {}, below}, true};
 }
 
 Source source_of_path(const fs::path& file) {
   const fs::path folder = wrapper::folder_of_model(file);
-  Source source = source_of(file, folder, wrapper::place_in_data_root(folder));
-  if (source.from_debian) return source;
-  source.file = folder == file.parent_path() ? file.filename()
-                                             : file.parent_path().filename() / file.filename();
-  source.letter_case = LetterCase::kIgnored;
-  return source;
+  const fs::path below = folder == file.parent_path()
+                             ? file.filename()
+                             : file.parent_path().filename() / file.filename();
+  return source_of(file,
+                   {folder, wrapper::place_in_data_root(folder), below, LetterCase::kIgnored});
 }
 
 Source source_of_entry(const Entry& entry) {
   const fs::path root = data_root_of(entry.catalogue_folder);
-  return source_of(fs::absolute(entry.file).lexically_normal(), root, {});
+  const fs::path file = fs::absolute(entry.file).lexically_normal();
+  return source_of(file, {root, {}, file.lexically_relative(root)});
 }
 
 // The model, and every file that it was read from.

@@ -33,10 +33,6 @@ struct Entry {
 // The folder in which Debian's package flightgear-data-ai installs its aircraft.
 constexpr const char* kDebianAircraft = "/usr/share/games/flightgear/AI/Aircraft";
 
-// FlightGear's data root for a folder of aircraft: the folder that holds its AI/Aircraft, or the
-// folder itself where its path has no such part.
-std::filesystem::path data_root_of(const std::filesystem::path& catalogue_folder);
-
 // All aircraft of the catalogue, sorted by name: those made in code, and those in the folders of
 // $AIRTRUTH_AIRCRAFT_PATH (colon-separated), or in kDebianAircraft where that is not set.
 std::vector<Entry> list_aircraft();
