@@ -71,9 +71,7 @@ void sample(const Sample& arguments, Context& context) {
   const tracks_file::TracksFormat format = tracks_file::tracks_format_of(arguments.out);
   Console& console = context.console();
   const sets::SampledSet set = sets::sampled_set(arguments);
-  sets::SetOptions options;
-  options.count = arguments.size();
-  options.jobs = arguments.jobs;
+  Sample options = arguments;
   follow(options, context, "drawing", "encounters");
   sets::SetSummary summary;
   files.write(arguments.out, [&](const std::filesystem::path& at) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "encounter/sets/sets.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -139,7 +140,8 @@ DrawEncounter geometric(const SampleRequest& request, const track::Track& own) {
       .climb_mps = distribution(request, "climb_mps", request.climb_mps, {0}),
       .turn_rate_dps = distribution(request, "turn_rate_dps", request.turn_rate_dps, {0}),
       .cpa_time_s = distribution(request, "cpa_time_s", {cpa_time_of(request, own)}, {})};
-  return geometric_pairs(pairing::GeometricSampler(options, request.seed, request.size()), own);
+  const auto count = static_cast<std::uint64_t>(std::max<std::int64_t>(0, request.count));
+  return geometric_pairs(pairing::GeometricSampler(options, request.seed, count), own);
 }
 
 std::shared_ptr<const encounter_model::Sampler> sampler_of(const SampleRequest& request,
@@ -211,7 +213,7 @@ namespace {
 constexpr std::uint64_t kBlock = 64;
 constexpr std::uint64_t kBlocksOfWindow = 32;
 // The number of encounters is 32 bits wide in a waypoint file.
-constexpr std::uint64_t kMaxCount = 0xffffffff;
+constexpr std::int64_t kMaxCount = 0xffffffff;
 
 struct Block {
   std::string bytes;
@@ -248,33 +250,34 @@ Block drawn_block(const DrawEncounter& draw,
 // Calls take(block) for each block in order.
 template <typename Take>
 void for_each_block(const DrawEncounter& draw,
-                    const SetOptions& options,
+                    const EncounterOptions& options,
                     std::optional<tracks_file::TracksFormat> format,
                     const Take& take) {
-  const std::uint64_t blocks = (options.count + kBlock - 1) / kBlock;
+  const auto count = static_cast<std::uint64_t>(options.count);
+  const std::uint64_t blocks = (count + kBlock - 1) / kBlock;
   for (std::uint64_t first = 0; first < blocks; first += kBlocksOfWindow) {
     std::vector<Block> window(std::min(kBlocksOfWindow, blocks - first));
     const auto draw_one = [&](std::size_t k) {
       const std::uint64_t begin = (first + k) * kBlock;
-      window[k] = drawn_block(draw, begin, std::min(begin + kBlock, options.count), format);
+      window[k] = drawn_block(draw, begin, std::min(begin + kBlock, count), format);
     };
     in_parallel(window.size(), options.jobs, draw_one, {}, options.stop);
     for (Block& block : window) take(block);
     if (options.progress)
-      options.progress(
-          static_cast<std::int64_t>(std::min((first + window.size()) * kBlock, options.count)),
-          static_cast<std::int64_t>(options.count));
+      options.progress(static_cast<std::int64_t>(std::min((first + window.size()) * kBlock, count)),
+                       options.count);
   }
 }
 
-void expect_count(std::uint64_t count, std::uint64_t most) {
+void expect_count(std::int64_t count, std::int64_t most) {
   if (count < 1 || count > most)
-    throw Error(fmt::format("{} encounters are asked for; expected 1 to {}", count, most));
+    throw Error(fmt::format(
+        "{} encounters are asked for; expected 1 to {}", std::max<std::int64_t>(0, count), most));
 }
 
 }  // namespace
 
-DrawnSet draw_set(const DrawEncounter& draw, const SetOptions& options) {
+DrawnSet draw_set(const DrawEncounter& draw, const EncounterOptions& options) {
   expect_count(options.count, kMaxInMemory);
   DrawnSet set;
   for_each_block(draw, options, {}, [&](Block& block) {
@@ -286,7 +289,7 @@ DrawnSet draw_set(const DrawEncounter& draw, const SetOptions& options) {
 
 SetSummary write_set(const std::filesystem::path& file,
                      const DrawEncounter& draw,
-                     const SetOptions& options) {
+                     const EncounterOptions& options) {
   expect_count(options.count, kMaxCount);
   const tracks_file::TracksFormat format = tracks_file::tracks_format_of(file);
   if (!tracks_file::holds_many(format)) {

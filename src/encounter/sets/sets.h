@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -57,9 +55,6 @@ struct SampleRequest : EncounterOptions {
   };
 
   bool is_geometric() const { return model == kGeometric; }
-  std::uint64_t size() const {
-    return static_cast<std::uint64_t>(std::max<std::int64_t>(0, count));
-  }
 };
 
 struct SampledSet {
@@ -74,14 +69,6 @@ SampledSet sampled_set(const SampleRequest& request);
 
 // A set that is drawn.
 
-struct SetOptions {
-  std::uint64_t count = 100;
-  // Threads; 0: one per core. The file does not depend on it.
-  int jobs = 0;
-  std::function<void(std::int64_t done, std::int64_t total)> progress;
-  std::stop_token stop;
-};
-
 struct SetSummary {
   std::uint64_t encounters = 0;
   // Tracks drawn in all, those that could not be used too.
@@ -94,20 +81,20 @@ struct SetSummary {
   double effective_count() const { return weight_sum * weight_sum / weight_squares; }
 };
 
-// Draws encounters 0 to count - 1 and writes them in order. No more than a few thousand encounters
-// stand in memory at a time, except in a format that holds a single encounter. Throws Error where
-// one cannot be drawn, the format cannot hold them, or the disk refuses the file, and Interrupted
-// after a stop; then no file is left.
+// Draws encounters 0 to count - 1 and writes them in order; of the options count, jobs, progress and
+// stop matter. No more than a few thousand encounters stand in memory at a time, except in a format
+// that holds a single encounter. Throws Error where one cannot be drawn, the format cannot hold
+// them, or the disk refuses the file, and Interrupted after a stop; then no file is left.
 SetSummary write_set(const std::filesystem::path& file,
                      const DrawEncounter& draw,
-                     const SetOptions& options);
+                     const EncounterOptions& options);
 
 // The same encounters in memory, at most kMaxInMemory.
-constexpr std::uint64_t kMaxInMemory = 1'000'000;
+constexpr std::int64_t kMaxInMemory = 1'000'000;
 struct DrawnSet {
   std::vector<track::Encounter> encounters;
   SetSummary summary;
 };
-DrawnSet draw_set(const DrawEncounter& draw, const SetOptions& options);
+DrawnSet draw_set(const DrawEncounter& draw, const EncounterOptions& options);
 
 }  // namespace airtruth::sets

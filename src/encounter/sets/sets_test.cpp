@@ -42,8 +42,8 @@ pairing::PairingOptions at_110_s() {
   return options;
 }
 
-SetOptions of(std::uint64_t count, int jobs) {
-  SetOptions options;
+EncounterOptions of(std::int64_t count, int jobs) {
+  EncounterOptions options;
   options.count = count;
   options.jobs = jobs;
   return options;
@@ -114,7 +114,7 @@ TEST_F(Sets, AFaultOrAStopLeavesNoFile) {
   EXPECT_THROW(write_set(folder_ / "a.csv", fails, of(200, 2)), Error);
   std::stop_source source;
   source.request_stop();
-  SetOptions stopped = of(200, 2);
+  EncounterOptions stopped = of(200, 2);
   stopped.stop = source.get_token();
   EXPECT_THROW(write_set(folder_ / "a.dat", model_tracks(small_sampler()), stopped), Interrupted);
   EXPECT_THROW(write_set(folder_ / "a.csv", model_tracks(small_sampler()), of(0, 1)), Error);
@@ -123,7 +123,7 @@ TEST_F(Sets, AFaultOrAStopLeavesNoFile) {
 }
 
 TEST_F(Sets, ProgressEndsAtTheCount) {
-  SetOptions options = of(3000, 1);
+  EncounterOptions options = of(3000, 1);
   std::int64_t last = 0;
   options.progress = [&](std::int64_t done, std::int64_t total) {
     EXPECT_GT(done, last);

@@ -24,8 +24,7 @@ void add_rows(SampledEncounters& result, const track::Track& track, std::int64_t
 SampledEncounters sample_encounters(const std::string& model, const EncounterOptions& options) {
   const sets::SampleRequest request{options, model};
   const sets::SampledSet set = sets::sampled_set(request);
-  const sets::DrawnSet drawn =
-      sets::draw_set(set.draw, {request.size(), options.jobs, options.progress, options.stop});
+  const sets::DrawnSet drawn = sets::draw_set(set.draw, options);
   SampledEncounters result;
   for (const track::Track& track : drawn.encounters.front().aircraft)
     result.aircraft_names.push_back(track.name);
