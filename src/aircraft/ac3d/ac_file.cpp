@@ -196,7 +196,6 @@ class AcParser {
   }
 
  private:
-  // A texture's name and the line that states it.
   struct Texture {
     std::string name;
     int line = 0;

@@ -142,7 +142,6 @@ Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& v) {
   return length > 0 ? Eigen::Vector3f(v * (1.0f / length)) : v;
 }
 
-// The way in which a surface becomes triangles.
 enum class Cut { kEars, kTriangle, kQuad, kFan };
 
 struct Facet {
@@ -205,7 +204,6 @@ float cosine_of_crease(float crease_deg) {
   return std::cos(static_cast<float>(radians(static_cast<double>(crease_deg))));
 }
 
-// The normal of each corner of the object.
 std::vector<Eigen::Vector3f> corner_normals(const AcObject& object,
                                             const std::vector<Facet>& facets) {
   std::vector<Eigen::Vector3f> result(object.corners.size(), Eigen::Vector3f::Zero());

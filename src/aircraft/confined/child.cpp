@@ -102,7 +102,6 @@ model::RawModel read_now(DiskFiles& files,
 // Bounds on what is kept of a model.
 constexpr std::size_t kMaxQuestionsKept = 10'000;  // files; a model asks for some tens
 constexpr std::size_t kMaxKeptText = 65536;        // bytes of a path
-// Number of hexadecimal digits of a SHA-256.
 constexpr std::size_t kShaDigits = 64;
 
 std::string bytes_of_asked(const std::vector<DiskFiles::Asked>& asked) {

@@ -340,7 +340,6 @@ Source source_of_entry(const Entry& entry) {
   return source_of(file, {root, {}, file.lexically_relative(root)});
 }
 
-// The model, and every file that it was read from.
 model::RawModel read_source(const Source& source,
                             const model::LoadOptions& options,
                             std::vector<fs::path>& sources) {

@@ -73,7 +73,6 @@ enum class Finish : std::uint8_t {
   kMetal,  // reflects, tinted by its colour, without a diffuse part
   kMat,    // diffuse without a reflection
 };
-// The number of finishes.
 constexpr std::uint8_t kFinishes = 4;
 
 // The finish that the words of a material's name in its file state. A word is a run of letters in

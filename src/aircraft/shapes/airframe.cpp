@@ -183,7 +183,6 @@ class Assembly {
     }
   }
 
-  // The grip, the blade and its tip.
   void add_blade(const Rotor& rotor,
                  const V& hub,
                  const V& axis,

@@ -40,7 +40,6 @@ struct Livery {
   std::array<float, 3> base, trim;  // linear RGB
 };
 
-// A section of a hull.
 struct Station {
   double forward, half_width, bottom, top;  // m
 };

@@ -132,7 +132,6 @@ void add_wing(MeshBuilder& builder,
   builder.add_wing({hand.begin() + 2, hand.end()}, material.tip_above, material.tip_below);
 }
 
-// The body from beak to tail, and the tail's fan.
 void add_trunk(MeshBuilder& builder, float span, const Feathers& feathers) {
   const auto at = [&](float ahead, float out, float below) -> V {
     return V(feathers.length * ahead, feathers.thickness * out, feathers.thickness * below) * span;
@@ -146,7 +145,6 @@ void add_trunk(MeshBuilder& builder, float span, const Feathers& feathers) {
   const std::uint32_t back = builder.add_material(feathers.back);
   const std::uint32_t beak = builder.add_material(feathers.beak);
   const std::uint32_t tail = builder.add_material(feathers.tail);
-  // Number of sides of the body.
   constexpr int kSides = 12;
   builder.begin_part({"body", {}});
   const std::array<Ring, 9> rings = {ring(0.175f, 0.008f, 0.008f, -0.004f),
@@ -354,15 +352,13 @@ model::Mesh multirotor(const MultirotorShape& shape) {
 namespace {
 
 // The outline of a latex envelope in shares of its diameter: a sphere above, drawn out to the neck
-// below. Height of the middle above the neck.
+// below.
 struct Outline {
   float above, radius;
 };
 
 std::vector<Outline> outline() {
-  // Number of steps from the top to the neck.
   constexpr int kSteps = 14;
-  // Of the sphere's middle; below it the radius shrinks to that of the neck.
   std::vector<Outline> result;
   for (int i = 0; i <= kSteps; ++i) {
     const double angle = kPi * i / kSteps;  // 0 at the top

@@ -88,7 +88,6 @@ class BmpReader {
 // The SGI Image File Format 0.97 (Paul Haeberli): big-endian, channels one after another, rows from
 // the bottom up.
 
-// Length of the header.
 constexpr std::size_t kSgiHeaderBytes = 512;
 
 class SgiReader {
@@ -189,7 +188,6 @@ class SgiReader {
 
 // Truevision TGA File Format Specification 2.0: little-endian.
 
-// Length of the header.
 constexpr std::size_t kTgaHeaderBytes = 18;
 
 struct TgaHeader {

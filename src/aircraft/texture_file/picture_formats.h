@@ -6,18 +6,15 @@
 
 #include "aircraft/texture_file/picture.h"
 
-// The formats that are read without a library. Errors have no place.
+// The formats that are read without a library; picture.h lists their kinds. Errors have no place.
 namespace airtruth::texture_file {
 
-// Windows bitmaps (BMP) of 8 bits with a palette, 24 and 32 bits, without compression. For what
-// other bitmaps hold, the Error names their bits and compression.
+// For what other bitmaps hold, the Error names their bits and compression.
 Picture read_bmp(std::string_view bytes, const PictureLimits& limits);
 
-// The SGI Image File Format 0.97 (Paul Haeberli).
 Picture read_sgi(std::string_view bytes, const PictureLimits& limits);
 
-// Truevision TGA File Format 2.0. Empty where the header contradicts itself, since the format has
-// no signature.
+// Empty where the header contradicts itself, since the format has no signature.
 std::optional<Picture> read_tga(std::string_view bytes, const PictureLimits& limits);
 
 }  // namespace airtruth::texture_file

@@ -63,7 +63,6 @@ class Assembly {
   std::size_t triangles_ = 0;
 };
 
-// Appends an AC3D file's triangles.
 void append_ac(Assembly& assembly, const ModelFile& file);
 
 }  // namespace airtruth::wrapper

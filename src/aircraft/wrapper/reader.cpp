@@ -72,7 +72,6 @@ void drop_doubles(model::Mesh& mesh) {
   }
 }
 
-// Removes vertices that no triangle uses.
 void drop_unused(model::Mesh& mesh) {
   constexpr std::uint32_t kUnused = ~std::uint32_t{0};
   std::vector<std::uint32_t> new_from_old(mesh.positions.size(), kUnused);

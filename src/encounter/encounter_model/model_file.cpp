@@ -162,7 +162,6 @@ class ModelFields {
     return lines;
   }
 
-  // The finite numbers of one line.
   std::vector<double> numbers_of(const FieldLine& line, const std::string& name) const {
     std::vector<double> numbers;
     std::string_view rest = line.text;

@@ -19,7 +19,6 @@ namespace airtruth::encounter_model {
 
 // A variable of a network with the distribution of its bins given those of its parents.
 struct Node {
-  // Number of bins.
   std::size_t bins = 0;
   // Indices of the parents, in ascending order. Their bins b_0, b_1, ... (from 0) select column
   // b_0 + bins_0 * (b_1 + bins_1 * (...)).

@@ -52,7 +52,6 @@ std::vector<std::size_t> bins_of(const BayesModel& model) {
   return bins;
 }
 
-// How many combinations the bins of the variables have.
 std::size_t combinations_of(const BayesModel& model, const std::vector<std::size_t>& variables) {
   std::size_t count = 1;
   for (const std::size_t variable : variables) {

@@ -35,7 +35,6 @@ struct AskedVolume {
   Volume volume;
 };
 
-// All named volumes.
 std::span<const NamedVolume> named_volumes();
 // The volume of that name; nullptr where there is none.
 const NamedVolume* named_volume(std::string_view name);

@@ -42,8 +42,6 @@ DrawEncounter model_pairs(std::shared_ptr<const encounter_model::Sampler> sample
 // geometric_passage() does. Throws Error where that is longer than kMaxDuration_s.
 DrawEncounter geometric_pairs(const pairing::GeometricSampler& sampler, track::Track own);
 
-// A set as a user asks for it.
-
 // In place of a model: steady flight from stated ranges.
 inline constexpr const char* kGeometric = "geometric";
 
@@ -67,8 +65,6 @@ struct SampledSet {
 // has no effect, so that nobody relies on it.
 SampledSet sampled_set(const SampleRequest& request);
 
-// A set that is drawn.
-
 struct SetSummary {
   std::uint64_t encounters = 0;
   // Tracks drawn in all, those that could not be used too.
@@ -81,10 +77,10 @@ struct SetSummary {
   double effective_count() const { return weight_sum * weight_sum / weight_squares; }
 };
 
-// Draws encounters 0 to count - 1 and writes them in order; of the options count, jobs, progress and
-// stop matter. No more than a few thousand encounters stand in memory at a time, except in a format
-// that holds a single encounter. Throws Error where one cannot be drawn, the format cannot hold
-// them, or the disk refuses the file, and Interrupted after a stop; then no file is left.
+// Draws encounters 0 to count - 1 and writes them in order; of the options count, jobs, progress
+// and stop matter. No more than a few thousand encounters stand in memory at a time, except in a
+// format that holds a single encounter. Throws Error where one cannot be drawn, the format cannot
+// hold them, or the disk refuses the file, and Interrupted after a stop; then no file is left.
 SetSummary write_set(const std::filesystem::path& file,
                      const DrawEncounter& draw,
                      const EncounterOptions& options);

@@ -58,7 +58,6 @@ Places columns_of(const std::vector<std::string_view>& headings, const Where& wh
   return places;
 }
 
-// Puts rows together to encounters.
 class EncounterRows {
  public:
   explicit EncounterRows(const Places& places) : places_(places) {}
@@ -174,7 +173,6 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kColumnNames = {"time_s", "x_ft", "y_ft", "z_ft"};
 
-// The place of each column of kColumnNames in a row.
 std::array<std::size_t, kColumnNames.size()> places_of(
     const std::vector<std::string_view>& headings, const Where& where) {
   std::array<std::size_t, kColumnNames.size()> places{};

@@ -157,7 +157,6 @@ double seconds_of_clock(std::string_view text, const Where& where) {
   return seconds;
 }
 
-// Reads the rows of one table.
 class RowReader {
  public:
   explicit RowReader(const Layout& layout) : layout_(layout) {}

@@ -75,8 +75,6 @@ bool is_unit_word(std::string_view word);
 // The names of a dimension's units, for messages: "m, km, ft, nmi".
 std::string units_of(Dimension dimension);
 
-// Rows of a file, one state of one aircraft each, put together to tracks.
-
 // The largest number of aircraft in one encounter: a bound for untrusted files.
 constexpr std::size_t kMaxAircraft = 1000;
 
