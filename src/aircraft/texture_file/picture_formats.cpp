@@ -24,66 +24,47 @@ constexpr std::uint32_t kInfoHeaderBytes = 40;   // the least that states a comp
 constexpr std::uint32_t kAlphaHeaderBytes = 56;  // the least that states where alpha is
 constexpr std::uint32_t kRgb = 0, kBitFields = 3;
 
-class BmpReader {
- public:
-  BmpReader(std::string_view bytes, const PictureLimits& limits) : bytes_(bytes), limits_(limits) {}
+}  // namespace
 
-  Picture read() {
-    header();
-    const std::uint32_t height = from_top_ ? ~height_ + 1 : height_;
-    Picture picture = blank_picture(width_, height, limits_);
-    const std::size_t stride = (std::size_t{width_} * bits_ / 8 + 3) / 4 * 4;
-    for (std::uint32_t y = 0; y < height; ++y) {
-      const std::size_t row = from_top_ ? height - 1 - y : y;
-      for (std::uint32_t x = 0; x < width_; ++x) {
-        const Rgba colour = colour_at(pixels_ + row * stride + std::size_t{x} * bits_ / 8);
-        std::copy(colour.begin(), colour.end(), &picture.rgba[4 * (std::size_t{y} * width_ + x)]);
-      }
-    }
-    return picture;
-  }
-
- private:
-  void header() {
-    const std::uint32_t size = number(kFileHeaderBytes);
-    if (size < kInfoHeaderBytes) throw Error("is a BMP file of OS/2; expected one of Windows");
-    pixels_ = number(10);
-    palette_ = kFileHeaderBytes + size;
-    width_ = number(18);
-    height_ = number(22);
-    from_top_ = (height_ >> 31) != 0;
-    bits_ = number(28) & 0xffff;
-    const std::uint32_t compression = number(30);
-    // The order of the colours in 32 bits is stated, and the usual one is read.
-    const bool is_usual = compression == kBitFields && bits_ == 32 && number(54) == 0xff0000 &&
-                          number(58) == 0xff00 && number(62) == 0xff;
-    if ((compression != kRgb && !is_usual) || (bits_ != 8 && bits_ != 24 && bits_ != 32))
-      throw Error("is a BMP file of " + std::to_string(bits_) + " bits with compression " +
-                  std::to_string(compression) + "; expected 8, 24 or 32 bits without");
-    has_alpha_ = is_usual && size >= kAlphaHeaderBytes && number(66) == 0xff000000;
-  }
-
-  Rgba colour_at(std::size_t at) const {
-    if (bits_ == 8) at = palette_ + std::size_t{4} * byte(at);
-    return {byte(at + 2), byte(at + 1), byte(at), has_alpha_ ? byte(at + 3) : std::uint8_t{255}};
-  }
-
-  std::uint8_t byte(std::size_t at) const {
-    if (at >= bytes_.size()) throw Error("is a BMP file that ends early");
-    return static_cast<std::uint8_t>(bytes_[at]);
-  }
-
-  std::uint32_t number(std::size_t at) const {
+Picture read_bmp(std::string_view bytes, const PictureLimits& limits) {
+  const auto byte = [&](std::size_t at) {
+    if (at >= bytes.size()) throw Error("is a BMP file that ends early");
+    return static_cast<std::uint8_t>(bytes[at]);
+  };
+  const auto number = [&](std::size_t at) {
     return byte(at) | std::uint32_t{byte(at + 1)} << 8 | std::uint32_t{byte(at + 2)} << 16 |
            std::uint32_t{byte(at + 3)} << 24;
-  }
+  };
+  const std::uint32_t header_bytes = number(kFileHeaderBytes);
+  if (header_bytes < kInfoHeaderBytes)
+    throw Error("is a BMP file of OS/2; expected one of Windows");
+  const std::size_t pixels = number(10), palette = kFileHeaderBytes + header_bytes;
+  const std::uint32_t width = number(18), stated_height = number(22);
+  const std::uint32_t bits = number(28) & 0xffff, compression = number(30);
+  // The order of the colours in 32 bits is stated, and the usual one is read.
+  const bool is_usual = compression == kBitFields && bits == 32 && number(54) == 0xff0000 &&
+                        number(58) == 0xff00 && number(62) == 0xff;
+  if ((compression != kRgb && !is_usual) || (bits != 8 && bits != 24 && bits != 32))
+    throw Error("is a BMP file of " + std::to_string(bits) + " bits with compression " +
+                std::to_string(compression) + "; expected 8, 24 or 32 bits without");
+  const bool has_alpha = is_usual && header_bytes >= kAlphaHeaderBytes && number(66) == 0xff000000;
+  const bool from_top = (stated_height >> 31) != 0;
+  const std::uint32_t height = from_top ? ~stated_height + 1 : stated_height;
+  Picture picture = blank_picture(width, height, limits);
+  const std::size_t stride = (std::size_t{width} * bits / 8 + 3) / 4 * 4;
+  for (std::uint32_t y = 0; y < height; ++y)
+    for (std::uint32_t x = 0; x < width; ++x) {
+      const std::size_t row = from_top ? height - 1 - y : y;
+      std::size_t at = pixels + row * stride + std::size_t{x} * bits / 8;
+      if (bits == 8) at = palette + std::size_t{4} * byte(at);
+      const Rgba colour{
+          byte(at + 2), byte(at + 1), byte(at), has_alpha ? byte(at + 3) : std::uint8_t{255}};
+      std::copy(colour.begin(), colour.end(), &picture.rgba[4 * (std::size_t{y} * width + x)]);
+    }
+  return picture;
+}
 
-  std::string_view bytes_;
-  PictureLimits limits_;
-  std::size_t pixels_ = 0, palette_ = 0;
-  std::uint32_t width_ = 0, height_ = 0, bits_ = 0;
-  bool from_top_ = false, has_alpha_ = false;
-};
+namespace {
 
 // The SGI Image File Format 0.97 (Paul Haeberli): big-endian, channels one after another, rows from
 // the bottom up.
@@ -319,10 +300,6 @@ class TgaReader {
 };
 
 }  // namespace
-
-Picture read_bmp(std::string_view bytes, const PictureLimits& limits) {
-  return BmpReader(bytes, limits).read();
-}
 
 Picture read_sgi(std::string_view bytes, const PictureLimits& limits) {
   return SgiReader(bytes, limits).read();
