@@ -200,7 +200,6 @@ void smooth_vertex(std::vector<Meeting>& meetings,
 
 float cosine_of_crease(float crease_deg) {
   if (crease_deg <= 0) return 1;
-  if (crease_deg >= 180) return -1;
   return std::cos(static_cast<float>(radians(static_cast<double>(crease_deg))));
 }
 

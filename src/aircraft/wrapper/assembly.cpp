@@ -17,9 +17,6 @@
 namespace airtruth::wrapper {
 namespace {
 
-// A bound for untrusted files, as raw_model.h has it for a model.
-constexpr std::size_t kMaxPictureBytes = std::size_t{256} << 20;
-
 // A propeller at cruise transmits nine tenths of the light, because its blades cover a tenth of its
 // disc (solidities are 0.04 to 0.15: Torenbeek 1982, section 6). The blades are dark and mat.
 // Models made for games draw denser and paler discs.
@@ -96,7 +93,7 @@ int Assembly::read_texture(const fs::path& path, const ac3d::Sampling& sampling)
   const std::pair key(path.string(), sampling);
   const auto known = picture_of_file_.find(key);
   if (known != picture_of_file_.end()) return known->second;
-  return picture_of_file_[key] = add_picture(files_.read(path, kMaxPictureBytes), sampling);
+  return picture_of_file_[key] = add_picture(files_.read(path, model::kMaxModelBytes), sampling);
 }
 
 void Assembly::warn(const std::string& text) {

@@ -37,8 +37,6 @@ enum EncounterColumn {
 };
 const std::vector<std::string> kEncounterColumnNames =
     words_in("encounter aircraft time_s north_m east_m down_m north_mps east_mps down_mps weight");
-// The largest number of an encounter; a double holds every whole number up to it.
-constexpr double kLargestNumber = 1e9;
 
 using Places = std::vector<std::size_t>;
 
@@ -67,7 +65,7 @@ class EncounterRows {
       return number_in(cells[places_[column]], kEncounterColumnNames[column], where);
     };
     const double number = value(kEncounterColumn);
-    if (number < 0 || number > kLargestNumber || number != std::floor(number))
+    if (number < 0 || number != std::floor(number))
       throw Error(fmt::format("encounter is {}; expected a whole number from 0", number), where);
     if (builder_.is_empty() || number != number_) begin(number, where);
     if (places_[kWeightColumn] != kNoColumn) set_weight(value(kWeightColumn), where);
