@@ -127,17 +127,10 @@ std::string DiskFiles::read_below(const fs::path& path, std::size_t max_bytes) {
 
 fs::path place_in_data_root(const fs::path& folder) {
   const fs::path whole = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
-  fs::path place;
-  bool found = false;
-  for (auto at = whole.begin(); at != whole.end(); ++at) {
-    const auto next = std::next(at);
-    if (*at == "AI" && next != whole.end() && *next == "Aircraft") {
-      place.clear();
-      found = true;
-    }
-    if (found) place /= *at;
-  }
-  return place;
+  for (fs::path at = whole; at.has_relative_path(); at = at.parent_path())
+    if (at.filename() == "Aircraft" && at.parent_path().filename() == "AI")
+      return whole.lexically_relative(at.parent_path().parent_path());
+  return {};
 }
 
 fs::path folder_of_model(const fs::path& file) {
