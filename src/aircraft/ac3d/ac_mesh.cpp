@@ -37,66 +37,6 @@ std::vector<Planar> projected(std::span<const Eigen::Vector3f> corners,
   return result;
 }
 
-class EarClipper {
- public:
-  explicit EarClipper(std::vector<Planar> corners) : corners_(std::move(corners)) {
-    for (std::uint32_t i = 0; i < corners_.size(); ++i) left_.push_back(i);
-  }
-
-  std::vector<std::array<std::uint32_t, 3>> clip() {
-    std::size_t start = 1;  // a polygon that is convex after all becomes a fan
-    while (left_.size() > 3) {
-      const std::size_t ear = next_ear(start);
-      result_.push_back(triangle(ear));
-      left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(ear));
-      start = ear % left_.size();
-    }
-    result_.push_back({left_[0], left_[1], left_[2]});
-    return std::move(result_);
-  }
-
- private:
-  std::array<std::uint32_t, 3> triangle(std::size_t i) const {
-    const std::size_t n = left_.size();
-    return {left_[(i + n - 1) % n], left_[i], left_[(i + 1) % n]};
-  }
-
-  double area_at(std::size_t i) const {
-    const auto [a, b, c] = triangle(i);
-    return doubled_area(corners_[a], corners_[b], corners_[c]);
-  }
-
-  bool is_ear(std::size_t i) const {
-    if (!(area_at(i) > 0)) return false;
-    const auto [a, b, c] = triangle(i);
-    const Planar& pa = corners_[a];
-    const Planar& pb = corners_[b];
-    const Planar& pc = corners_[c];
-    for (const std::uint32_t other : left_) {
-      const Planar& p = corners_[other];
-      if (other == a || other == b || other == c || p == pa || p == pb || p == pc) continue;
-      if (doubled_area(pa, pb, p) >= 0 && doubled_area(pb, pc, p) >= 0 &&
-          doubled_area(pc, pa, p) >= 0)
-        return false;
-    }
-    return true;
-  }
-
-  std::size_t next_ear(std::size_t start) const {
-    const std::size_t n = left_.size();
-    for (std::size_t k = 0; k < n; ++k)
-      if (is_ear((start + k) % n)) return (start + k) % n;
-    std::size_t flattest = 0;  // removing a corner of no area changes nothing
-    for (std::size_t i = 1; i < n; ++i)
-      if (std::abs(area_at(i)) < std::abs(area_at(flattest))) flattest = i;
-    return flattest;
-  }
-
-  std::vector<Planar> corners_;
-  std::vector<std::uint32_t> left_;
-  std::vector<std::array<std::uint32_t, 3>> result_;
-};
-
 // The scalar product, written out so that every compiler adds in the same order and the result is
 // the same.
 float dot_product(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
@@ -130,7 +70,45 @@ bool is_concave(std::span<const Eigen::Vector3f> corners) {
 
 std::vector<std::array<std::uint32_t, 3>> ear_clipped(std::span<const Eigen::Vector3f> corners,
                                                       const Eigen::Vector3f& normal) {
-  return EarClipper(projected(corners, normal)).clip();
+  const std::vector<Planar> flat = projected(corners, normal);
+  std::vector<std::uint32_t> left(flat.size());
+  std::iota(left.begin(), left.end(), 0u);
+  const auto triangle = [&](std::size_t i) {
+    const std::size_t n = left.size();
+    return std::array{left[(i + n - 1) % n], left[i], left[(i + 1) % n]};
+  };
+  const auto area_at = [&](std::size_t i) {
+    const auto [a, b, c] = triangle(i);
+    return doubled_area(flat[a], flat[b], flat[c]);
+  };
+  const auto is_ear = [&](std::size_t i) {
+    const auto [a, b, c] = triangle(i);
+    const Planar &pa = flat[a], &pb = flat[b], &pc = flat[c];
+    return area_at(i) > 0 && std::ranges::none_of(left, [&](std::uint32_t other) {
+             const Planar& p = flat[other];
+             return p != pa && p != pb && p != pc && doubled_area(pa, pb, p) >= 0 &&
+                    doubled_area(pb, pc, p) >= 0 && doubled_area(pc, pa, p) >= 0;
+           });
+  };
+  const auto next_ear = [&](std::size_t start) {
+    const std::size_t n = left.size();
+    for (std::size_t k = 0; k < n; ++k)
+      if (is_ear((start + k) % n)) return (start + k) % n;
+    std::size_t flattest = 0;  // removing a corner of no area changes nothing
+    for (std::size_t i = 1; i < n; ++i)
+      if (std::abs(area_at(i)) < std::abs(area_at(flattest))) flattest = i;
+    return flattest;
+  };
+  std::vector<std::array<std::uint32_t, 3>> result;
+  std::size_t start = 1;  // a polygon that is convex after all becomes a fan
+  while (left.size() > 3) {
+    const std::size_t ear = next_ear(start);
+    result.push_back(triangle(ear));
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+    start = ear % left.size();
+  }
+  result.push_back({left[0], left[1], left[2]});
+  return result;
 }
 
 namespace {
