@@ -223,63 +223,17 @@ struct VertexHash {
   }
 };
 
-class BatchBuilder {
- public:
-  BatchBuilder(const AcObject& object,
-               const std::vector<Facet>& facets,
-               const std::vector<Eigen::Vector3f>& normals)
-      : object_(object), facets_(facets), normals_(normals) {}
-
-  void begin(const model::Material& material) {
-    batch_ = {};
-    index_.clear();
-    batch_.srgb = material;
-    batch_.texture = object_.texture;
-    batch_.texture_line = object_.texture_line;
+void add_triangles(const Facet& facet,
+                   const std::vector<std::uint32_t>& vertices,
+                   std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  if (facet.cut == Cut::kEars) {
+    for (const auto& [a, b, c] : ear_clipped(facet.positions, facet.weighted_normal))
+      triangles.push_back({vertices[a], vertices[b], vertices[c]});
+    return;
   }
-
-  void add(std::size_t surface_index) {
-    const AcSurface& surface = object_.surfaces[surface_index];
-    const Facet& facet = facets_[surface_index];
-    std::vector<std::uint32_t> vertices;
-    for (std::uint32_t i = 0; i < surface.corners; ++i)
-      vertices.push_back(vertex(facet.positions[i], surface.first_corner + i));
-    if (facet.cut == Cut::kEars) {
-      for (const auto& [a, b, c] : ear_clipped(facet.positions, facet.weighted_normal))
-        batch_.triangles.push_back({vertices[a], vertices[b], vertices[c]});
-      return;
-    }
-    for (std::size_t i = 2; i < vertices.size(); ++i)
-      batch_.triangles.push_back({vertices[0], vertices[i - 1], vertices[i]});
-  }
-
-  Batch take() { return std::move(batch_); }
-
- private:
-  std::uint32_t vertex(const Eigen::Vector3f& position, std::uint32_t corner_index) {
-    const AcCorner& corner = object_.corners[corner_index];
-    const Eigen::Vector3f& normal = normals_[corner_index];
-    const Eigen::Vector2f uv =
-        object_.texture.empty() ? Eigen::Vector2f(0, 0) : Eigen::Vector2f(corner.u, corner.v);
-    std::array<float, 8> values{};
-    Eigen::Map<Eigen::Matrix<float, 8, 1>>(values.data()) << position, normal, uv;
-    const auto key = std::bit_cast<VertexBits>(values);
-    const auto [known, is_new] =
-        index_.try_emplace(key, static_cast<std::uint32_t>(batch_.positions.size()));
-    if (is_new) {
-      batch_.positions.push_back(position);
-      batch_.normals.push_back(normal);
-      batch_.uvs.push_back(uv);
-    }
-    return known->second;
-  }
-
-  const AcObject& object_;
-  const std::vector<Facet>& facets_;
-  const std::vector<Eigen::Vector3f>& normals_;
-  Batch batch_;
-  std::unordered_map<VertexBits, std::uint32_t, VertexHash> index_;
-};
+  for (std::size_t i = 2; i < vertices.size(); ++i)
+    triangles.push_back({vertices[0], vertices[i - 1], vertices[i]});
+}
 
 // Sorts surfaces by material, then smooth before flat, two-sided before one-sided, then by their
 // cut. The order matters, because of triangles in the same place only the first is kept.
@@ -303,15 +257,39 @@ std::vector<Batch> batches_of(const AcFile& file, const AcObject& object) {
   for (const AcSurface& surface : object.surfaces) facets.push_back(facet_of(object, surface));
   const std::vector<Eigen::Vector3f> normals = corner_normals(object, facets);
   std::vector<Batch> result;
-  BatchBuilder builder(object, facets, normals);
-  const std::vector<std::size_t> order = drawing_order(object, facets);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const std::uint32_t material = object.surfaces[order[i]].material;
-    if (i == 0 || material != object.surfaces[order[i - 1]].material)
-      builder.begin(file.materials[material]);
-    builder.add(order[i]);
-    if (i + 1 == order.size() || material != object.surfaces[order[i + 1]].material)
-      result.push_back(builder.take());
+  std::unordered_map<VertexBits, std::uint32_t, VertexHash> index;  // of the last batch's vertices
+  const auto vertex = [&](const Eigen::Vector3f& position, std::uint32_t corner_index) {
+    Batch& batch = result.back();
+    const AcCorner& corner = object.corners[corner_index];
+    const Eigen::Vector3f& normal = normals[corner_index];
+    const Eigen::Vector2f uv =
+        object.texture.empty() ? Eigen::Vector2f(0, 0) : Eigen::Vector2f(corner.u, corner.v);
+    std::array<float, 8> values{};
+    Eigen::Map<Eigen::Matrix<float, 8, 1>>(values.data()) << position, normal, uv;
+    const auto [known, is_new] = index.try_emplace(
+        std::bit_cast<VertexBits>(values), static_cast<std::uint32_t>(batch.positions.size()));
+    if (is_new) {
+      batch.positions.push_back(position);
+      batch.normals.push_back(normal);
+      batch.uvs.push_back(uv);
+    }
+    return known->second;
+  };
+  std::optional<std::uint32_t> material;
+  for (const std::size_t i : drawing_order(object, facets)) {
+    const AcSurface& surface = object.surfaces[i];
+    if (material != surface.material) {
+      material = surface.material;
+      index.clear();
+      Batch& batch = result.emplace_back();
+      batch.srgb = file.materials[surface.material];
+      batch.texture = object.texture;
+      batch.texture_line = object.texture_line;
+    }
+    std::vector<std::uint32_t> vertices;
+    for (std::uint32_t k = 0; k < surface.corners; ++k)
+      vertices.push_back(vertex(facets[i].positions[k], surface.first_corner + k));
+    add_triangles(facets[i], vertices, result.back().triangles);
   }
   return result;
 }
