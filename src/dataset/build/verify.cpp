@@ -248,18 +248,10 @@ class Check {
            const annotation::Intruder& intruder,
            int width,
            int height) {
-    const std::string where = words_of(frame, intruder);
-    const bool visible = intruder.state == annotation::State::kVisible;
-    if (visible != intruder.visible_box_px.has_value())
-      return fault(where + (visible ? "visible without a box" : "a box, and not visible"));
     for (const auto& [what, box] : {std::pair("visible", intruder.visible_box_px),
                                     std::pair("covered", intruder.covered_box_px)})
-      if (box && !lies_in({0, 0, width, height}, *box))
-        fault(where + "its " + what + " box reaches out of the frame");
-  }
-
-  static bool lies_in(const PixelBox& frame, const PixelBox& box) {
-    return box.width > 0 && box.height > 0 && intersection(frame, box) == box;
+      if (box && intersection({0, 0, width, height}, *box) != *box)
+        fault(words_of(frame, intruder) + "its " + what + " box reaches out of the frame");
   }
 
   // The stated contrast to noise is of the picture before it is encoded; that of the video is
