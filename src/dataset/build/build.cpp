@@ -32,7 +32,6 @@
 #include "foundation/base/stopwatch.h"
 #include "foundation/json/json_object.h"
 #include "foundation/json/or_null.h"
-#include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/replay/recorded_inputs.h"

@@ -22,7 +22,6 @@
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/level_camera.h"
-#include "sequence/setup/world.h"
 
 namespace airtruth::build {
 namespace {

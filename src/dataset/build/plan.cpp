@@ -9,11 +9,9 @@
 #include "dataset/labelled/labelled_set.h"
 #include "foundation/base/error.h"
 #include "scene/scene/camera_keys.h"
-#include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
-#include "sequence/setup/world.h"
 
 namespace airtruth::build {
 namespace {

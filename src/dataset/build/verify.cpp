@@ -15,7 +15,6 @@
 #include <fmt/format.h>
 
 #include "camera/lens/lens.h"
-#include "dataset/build/inputs.h"
 #include "dataset/catalogue/expand.h"
 #include "dataset/sequences/layout.h"
 #include "foundation/base/descriptor.h"

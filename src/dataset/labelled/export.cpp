@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include "dataset/labelled/truth_table.h"
-#include "dataset/sequences/layout.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
@@ -58,10 +57,8 @@ std::string sha256_of_set(const fs::path& set, const LabelledSet& labelled) {
   if (const fs::path record = set / "dataset.json"; labelled.missing() == 0 && fs::exists(record))
     return sha256_of_file(record);
   std::string all;
-  for (const std::string& name : labelled.names()) {
-    const char* record = labelled.is_imported(name) ? sequences::kLabels : "sequence.json";
-    all += name + ' ' + sha256_of_file(labelled.folder(name) / record) + '\n';
-  }
+  for (const std::string& name : labelled.names())
+    all += name + ' ' + labelled.sha256_of(name) + '\n';
   return sha256_of(all);
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/labelled/labelled_set.h"
 
-#include <algorithm>
-
 #include "dataset/catalogue/expand.h"
 #include "dataset/catalogue/folder.h"
 #include "foundation/base/files.h"

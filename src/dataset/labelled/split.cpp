@@ -15,7 +15,6 @@ namespace {
 constexpr std::array<const char*, 3> kParts = {"train", "val", "test"};
 
 struct Group {
-  std::string name;
   // A random key, so that the order of equally large groups does not follow their names.
   std::string order;
   std::vector<std::string> sequences;
@@ -31,7 +30,6 @@ std::vector<Group> groups_of(const std::vector<ClipFacts>& clips, Split split, s
   }
   std::vector<Group> result;
   for (auto& [name, group] : groups) {
-    group.name = name;
     group.order = sha256_of(std::to_string(seed) + "/" + fs::path(name).filename().string());
     result.push_back(std::move(group));
   }

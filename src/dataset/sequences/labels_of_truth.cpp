@@ -2,7 +2,6 @@
 #include "dataset/sequences/labels_of_truth.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "foundation/geometry/box.h"
