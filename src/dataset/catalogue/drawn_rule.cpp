@@ -44,6 +44,24 @@ std::string no_aircraft_fits(const std::string& pattern) {
   return text + nearest + "; see `airtruth aircraft list`";
 }
 
+// The type of an aircraft is the folder of its name.
+std::vector<AircraftType> types_in(const TableReader& table) {
+  const auto patterns = table.texts("aircraft");
+  if (!patterns)
+    throw Error("has no aircraft; expected names or patterns of `airtruth aircraft list`",
+                table.where());
+  std::map<std::string, std::set<std::string>> liveries_of;
+  for (std::size_t i = 0; i < patterns->size(); ++i) {
+    const std::vector<std::string> names = fleet::aircraft_fitting((*patterns)[i]);
+    for (const std::string& name : names) liveries_of[name.substr(0, name.find('/'))].insert(name);
+    if (names.empty()) throw Error(no_aircraft_fits((*patterns)[i]), table.where("aircraft", i));
+  }
+  std::vector<AircraftType> result;
+  for (const auto& [type, liveries] : liveries_of)
+    result.push_back({type, {liveries.begin(), liveries.end()}});
+  return result;
+}
+
 std::optional<DaytimeRange> daytime_from(const TableReader& table) {
   table.exclude("time_of_day_h", {"sun_azimuth_deg", "sun_elevation_deg"});
   for (const char* key : {"latitude_deg", "day_of_year"})
@@ -248,13 +266,7 @@ void read_weather(const TableReader& rule, const Catalogue& catalogue, Drawn& dr
 }
 
 Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
-  Drawn drawn;
-  drawn.where = table.where();
-  drawn.name = index_pattern(table, "r{index}");
-  drawn.count = table.whole("count", 1, kMostSequences).value_or(1);
-  drawn.frame_count = table.whole("frame_count", 1, kMaxDrawnFrames).value_or(drawn.frame_count);
-  drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
-  drawn.types = types_in(table);
+  Drawn drawn{numbered_rule(table, catalogue, "r{index}", 90, kMaxDrawnFrames)};
   read_paths(table, drawn);
   read_intruders(table, catalogue.negatives, drawn);
   read_start(table, catalogue, drawn);
@@ -267,6 +279,19 @@ Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
 
 }  // namespace
 
+NumberedRule numbered_rule(const TableReader& table,
+                           const Catalogue& catalogue,
+                           const char* usual_name,
+                           std::int64_t usual_frames,
+                           std::int64_t most_frames) {
+  return {.name = index_pattern(table, usual_name),
+          .where = table.where(),
+          .count = table.whole("count", 1, kMostSequences).value_or(1),
+          .frame_count = table.whole("frame_count", 1, most_frames).value_or(usual_frames),
+          .backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background"),
+          .types = types_in(table)};
+}
+
 void read_place(const TableReader& table, MeetingPlace& place) {
   table.exclude("size_px", {"range_m"});
   read_range(table, "range_m", scene::kRangeToAircraft, place.range_m);
@@ -274,24 +299,6 @@ void read_place(const TableReader& table, MeetingPlace& place) {
   read_range(table, "azimuth_deg", scene::kTurn, place.azimuth_deg);
   read_range(table, "elevation_deg", scene::kPitch, place.elevation_deg);
   read_range(table, "heading_deg", scene::kTurn, place.heading_deg);
-}
-
-// The type of an aircraft is the folder of its name.
-std::vector<AircraftType> types_in(const TableReader& table) {
-  const auto patterns = table.texts("aircraft");
-  if (!patterns)
-    throw Error("has no aircraft; expected names or patterns of `airtruth aircraft list`",
-                table.where());
-  std::map<std::string, std::set<std::string>> liveries_of;
-  for (std::size_t i = 0; i < patterns->size(); ++i) {
-    const std::vector<std::string> names = fleet::aircraft_fitting((*patterns)[i]);
-    for (const std::string& name : names) liveries_of[name.substr(0, name.find('/'))].insert(name);
-    if (names.empty()) throw Error(no_aircraft_fits((*patterns)[i]), table.where("aircraft", i));
-  }
-  std::vector<AircraftType> result;
-  for (const auto& [type, liveries] : liveries_of)
-    result.push_back({type, {liveries.begin(), liveries.end()}});
-  return result;
 }
 
 std::vector<Drawn> drawn_rules(const TableReader& root, const Catalogue& catalogue) {

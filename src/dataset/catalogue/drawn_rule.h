@@ -73,6 +73,26 @@ struct AircraftType {
   bool operator==(const AircraftType&) const = default;
 };
 
+// What a rule states that numbers its sequences: [[random]] and [[encounter_model]].
+struct NumberedRule {
+  std::string name;  // pattern with {index}
+  Where where;
+  std::int64_t count = 0;
+  std::int64_t frame_count = 0;
+  std::vector<std::size_t> backgrounds;
+  std::vector<AircraftType> types;
+  // Share of sequences without an intruder, from 0 to 1.
+  double negatives = 0;
+};
+
+// Reads all but the negatives: the aircraft are those of the list that fit the patterns of the key
+// `aircraft`, by type.
+NumberedRule numbered_rule(const scene::TableReader& table,
+                           const Catalogue& catalogue,
+                           const char* usual_name,
+                           std::int64_t usual_frames,
+                           std::int64_t most_frames);
+
 // The sun at a random time of day, at a given place and on a given day (drawing.h).
 struct DaytimeRange {
   // Local solar time in hours; empty: hours that suit the type.
@@ -106,15 +126,8 @@ void read_place(const scene::TableReader& table, MeetingPlace& place);
 
 // A rule for random intruders that cross the view. At a moment within the clip, the meeting moment,
 // each intruder has the range and direction from the camera that the rule draws. It flies straight
-// or, with a bank, in a coordinated turn.
-struct Drawn {
-  std::string name;  // pattern with {index}
-  Where where;
-  std::int64_t count = 0;
-  std::int64_t frame_count = 90;
-  std::vector<std::size_t> backgrounds;
-  // The types take turns; the livery is drawn.
-  std::vector<AircraftType> types;
+// or, with a bank, in a coordinated turn. The types take turns; the livery is drawn.
+struct Drawn : NumberedRule {
   MeetingPlace place;
   // Empty: a speed that suits the type.
   std::optional<Range> speed_mps;
@@ -131,8 +144,6 @@ struct Drawn {
   // Replaces the two sun ranges.
   std::optional<DaytimeRange> daytime;
   std::optional<DrawnWeather> weather;
-  // Share of sequences without an intruder, from 0 to 1.
-  double negatives = 0;
   WholeRange intruders;
   // True: ids are intruder-1, intruder-2, ...; false: the id is "intruder".
   bool numbers_intruders = false;
@@ -142,8 +153,5 @@ struct Drawn {
 // Reads the tables [[random]] of a catalogue whose backgrounds have been read. Throws Error with
 // line and column.
 std::vector<Drawn> drawn_rules(const scene::TableReader& root, const Catalogue& catalogue);
-
-// The key `aircraft` of a table: the aircraft of the list that fit its patterns, by type.
-std::vector<AircraftType> types_in(const scene::TableReader& table);
 
 }  // namespace airtruth::catalogue

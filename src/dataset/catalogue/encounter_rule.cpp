@@ -123,15 +123,9 @@ void read_model(const TableReader& table, const Catalogue& catalogue, EncounterR
 }
 
 EncounterRule rule_from(const TableReader& table, const Catalogue& catalogue) {
-  EncounterRule rule;
-  rule.where = table.where();
-  rule.name = index_pattern(table, "e{index}");
+  EncounterRule rule{numbered_rule(table, catalogue, "e{index}", 240, kMaxFrames)};
   rule.seed = Seed(catalogue.seed).stream("encounters of " + rule.name)();
-  rule.count = table.whole("count", 1, kMostSequences).value_or(1);
-  rule.frame_count = table.whole("frame_count", 1, kMaxFrames).value_or(rule.frame_count);
   rule.length_s = static_cast<int>(std::ceil(double(rule.frame_count) / kSlowestRateHz)) + 1;
-  rule.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
-  rule.types = types_in(table);
   const Limits share{"a share from 0 to 1", 0, 1};
   rule.negatives = table.number("negatives", share).value_or(catalogue.negatives);
   rule.two_intruders = table.number("two_intruders", share).value_or(0);

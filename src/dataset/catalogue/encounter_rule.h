@@ -25,15 +25,9 @@ namespace airtruth::catalogue {
 struct Catalogue;
 
 // A rule for encounters: intruders that pass the own aircraft as a model of traffic or a stated
-// geometry says (encounter/pairing/pair.h).
-struct EncounterRule {
-  std::string name;  // pattern with {index}
-  Where where;
-  std::int64_t count = 0;
-  std::int64_t frame_count = 240;
-  std::vector<std::size_t> backgrounds;
-  // One whose class flies the intruder's track is chosen, then a livery of it.
-  std::vector<AircraftType> types;
+// geometry says (encounter/pairing/pair.h). A type whose class flies the intruder's track is
+// chosen, then a livery of it.
+struct EncounterRule : NumberedRule {
   // The seed of all that is drawn; it follows from the catalogue's and the rule's name.
   std::uint64_t seed = 1;
   // The tracks of `kind = "bayes"` and their file; empty: the geometry below is drawn.
@@ -43,8 +37,7 @@ struct EncounterRule {
   pairing::GeometricOptions geometry;
   // How long the tracks are, in seconds of the clip.
   int length_s = 0;
-  // Shares of the sequences, from 0 to 1: without an intruder, and of the others with two.
-  double negatives = 0;
+  // Share of the sequences with an intruder that have two, from 0 to 1.
   double two_intruders = 0;
   // True: an intruder is drawn again until its reference point is in the view of the nominal camera
   // for `seen_s` in all.

@@ -29,10 +29,10 @@ std::int64_t part_number(std::int64_t run, std::int64_t part) { return run * kRu
 bool is_passage(const catalogue::Drawn& rule) { return rule.approach.has_value(); }
 bool is_passage(const catalogue::EncounterRule&) { return true; }
 
-const std::vector<std::size_t>& backgrounds_of(
+const catalogue::NumberedRule& numbered(
     const std::variant<catalogue::Drawn, catalogue::EncounterRule>& drawing) {
   return std::visit(
-      [](const auto& one) -> const auto& { return one.backgrounds; }, drawing);
+      [](const catalogue::NumberedRule& one) -> const auto& { return one; }, drawing);
 }
 
 // How much of a rule is over `background`.
@@ -95,16 +95,13 @@ Planner::Planner(const catalogue::Catalogue& catalogue,
     : catalogue_(catalogue), seed_(seed), files_(std::move(files)), shared_(shared) {
   for (const catalogue::Rule& given : catalogue.rules) {
     Rule rule{checked(given), 0, 1};
-    std::visit(
-        [&](auto& drawing) {
-          check_backgrounds(drawing.backgrounds);
-          constexpr bool kEncounters =
-              std::is_same_v<std::decay_t<decltype(drawing)>, catalogue::EncounterRule>;
-          // An encounter's track needs a type that flies it.
-          rule.fleet = fleet_with({std::exchange(drawing.types, {}), kEncounters});
-          rule.seed = Seed(seed).stream(drawing.name)();
-        },
-        rule.drawing);
+    check_backgrounds(numbered(rule.drawing).backgrounds);
+    // An encounter's track needs a type that flies it.
+    const bool is_encounter = std::holds_alternative<catalogue::EncounterRule>(rule.drawing);
+    rule.fleet = fleet_with(
+        {std::visit([](auto& one) { return std::exchange(one.types, {}); }, rule.drawing),
+         is_encounter});
+    rule.seed = Seed(seed).stream(numbered(rule.drawing).name)();
     rules_.push_back(std::move(rule));
   }
   std::size_t aircraft = 0;
@@ -183,9 +180,7 @@ const Planner::Rule& Planner::drawn_rule(Random random,
                                          const std::function<double(const Rule&)>& share) const {
   std::vector<double> shares;
   for (const Rule& rule : rules_)
-    shares.push_back(share(rule) *
-                     static_cast<double>(std::visit(
-                         [](const auto& drawing) { return drawing.count; }, rule.drawing)));
+    shares.push_back(share(rule) * static_cast<double>(numbered(rule.drawing).count));
   double left = random.uniform() * std::accumulate(shares.begin(), shares.end(), 0.0);
   std::size_t last = 0;  // of those that may be drawn: sums are rounded
   for (std::size_t k = 0; k < rules_.size(); ++k) {
@@ -199,7 +194,7 @@ const Planner::Rule& Planner::drawn_rule(Random random,
 const Planner::Rule& Planner::rule_over(std::size_t background, std::int64_t index) const {
   return drawn_rule(
       Seed(seed_).stream("rule", static_cast<std::uint64_t>(index)), [&](const Rule& rule) {
-        return share_of(background, backgrounds_of(rule.drawing), catalogue_.backgrounds);
+        return share_of(background, numbered(rule.drawing).backgrounds, catalogue_.backgrounds);
       });
 }
 
@@ -210,7 +205,7 @@ Planner::Run Planner::run_of(std::int64_t number, std::int64_t part) const {
   Random random = Seed(seed_).stream("run", of_part);
   Run run;
   run.background = catalogue::background_at(
-      random.uniform(), backgrounds_of(rule.drawing), catalogue_.backgrounds);
+      random.uniform(), numbered(rule.drawing).backgrounds, catalogue_.backgrounds);
   const catalogue::Background& background = catalogue_.backgrounds[run.background];
   const catalogue::BackgroundFiles& files = files_(run.background);
   if (files.frames <= 0)
