@@ -275,9 +275,8 @@ void lay_distractors(scene::Scene& scene,
   for (const DrawnFlock& flock : drawn.flocks) {
     scene::Intruder leader = flock.leader;
     const Encounter& encounter = flock.encounter;
-    const double range_m = encounter.range_m.value_or(kProvisionalRangeM);
     if (clip.size.width == 0)
-      lay_path(leader, encounter, scene.camera, clip, range_m);
+      lay_path(leader, encounter, scene.camera, clip, kProvisionalRangeM);
     else
       meet(leader, scene, encounter, clip, shared);
     for (scene::Intruder& one : scene::flock_of(leader, flock.count, flock.spread_m, flock.seed))

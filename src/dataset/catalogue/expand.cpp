@@ -90,7 +90,7 @@ void take_weather(const DrawnSequence& drawn, scene::Scene& scene) {
 
 // An item of a numbered rule before anything is in its scene.
 Item empty_item(const Catalogue& catalogue,
-                const auto& rule,
+                const NumberedRule& rule,
                 std::int64_t index,
                 std::size_t background) {
   Item item;
@@ -117,13 +117,12 @@ Item item_of(const Catalogue& catalogue,
   const DrawnClip clip{rule.frame_count, kAssumedRateHz};
   for (std::size_t k = 0; k < item.drawn.encounters.size(); ++k) {
     const Encounter& encounter = item.drawn.encounters[k];
-    scene::Intruder intruder = intruder_of(rule, encounter, k);
-    if (!lay_stated_path(intruder, encounter, clip))
-      lay_path(intruder,
-               encounter,
-               item.scene.camera,
-               clip,
-               encounter.range_m.value_or(kProvisionalRangeM));
+    scene::Intruder intruder{
+        .id = rule.numbers_intruders ? fmt::format("intruder-{}", k + 1) : "intruder",
+        .aircraft = encounter.aircraft,
+        .speed_mps = encounter.speed_mps,
+        .where = rule.where};
+    lay_path(intruder, encounter, item.scene.camera, clip, kProvisionalRangeM);
     item.scene.intruders.push_back(std::move(intruder));
   }
   return item;

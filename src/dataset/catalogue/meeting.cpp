@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "aircraft/fleet/flight_limits.h"
 #include "aircraft/model/mesh.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/units.h"
@@ -132,8 +131,8 @@ trajectory::State state_at(const trajectory::Path& own, double time_s, const Whe
               where);
 }
 
-}  // namespace
-
+// Gives the intruder the path of an encounter that states a closest approach or what is seen.
+// Returns false, and changes nothing, for any other encounter.
 bool lay_stated_path(scene::Intruder& intruder, const Encounter& encounter, const DrawnClip& clip) {
   if (!encounter.approach && encounter.seen.empty()) return false;
   intruder.speed_mps.reset();
@@ -143,24 +142,21 @@ bool lay_stated_path(scene::Intruder& intruder, const Encounter& encounter, cons
   return true;
 }
 
-scene::Intruder intruder_of(const Drawn& rule, const Encounter& encounter, std::size_t k) {
-  return {.id = rule.numbers_intruders ? fmt::format("intruder-{}", k + 1) : "intruder",
-          .aircraft = encounter.aircraft,
-          .speed_mps = encounter.speed_mps,
-          .where = rule.where};
-}
+}  // namespace
 
 void lay_path(scene::Intruder& intruder,
               const Encounter& encounter,
               const scene::Camera& camera,
               const DrawnClip& clip,
-              double range_m) {
+              double provisional_range_m) {
+  if (lay_stated_path(intruder, encounter, clip)) return;
   const double meets_s = meeting_s(encounter, clip);
   const Vector3 meeting =
       camera.position_ned_m + meets_s * camera.velocity_ned_mps +
-      range_m * direction_in_world(
-                    encounter,
-                    world_from_body(camera.attitude_yaw_pitch_roll_deg.value_or(YawPitchRoll{})));
+      encounter.range_m.value_or(provisional_range_m) *
+          direction_in_world(
+              encounter,
+              world_from_body(camera.attitude_yaw_pitch_roll_deg.value_or(YawPitchRoll{})));
   lay_through(intruder, encounter, meeting, clip);
 }
 

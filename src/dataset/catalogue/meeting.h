@@ -34,22 +34,16 @@ struct DrawnClip {
   }
 };
 
-// Returns intruder k (from 0) of a sequence with id, aircraft and speed; it has no path yet.
-scene::Intruder intruder_of(const Drawn& rule, const Encounter& encounter, std::size_t k);
-
-// Gives the intruder the path of an encounter that states a closest approach or what is seen.
-// Returns false, and changes nothing, for any other encounter.
-bool lay_stated_path(scene::Intruder& intruder, const Encounter& encounter, const DrawnClip& clip);
-
-// Gives the intruder a path that at the meeting moment passes the point at range_m in the
-// encounter's direction. The path is straight, or a coordinated turn with the encounter's bank: a
-// helix of radius speed^2 / (g tan bank) over the ground. It covers the clip and at least one
-// second more. `camera` moves with its stated position, velocity and attitude.
+// Gives the intruder the stated path of its encounter, or one that at the meeting moment passes the
+// point in the encounter's direction at its range; of one that has a size, at the provisional one.
+// The path is straight, or a coordinated turn with the encounter's bank: a helix of radius speed^2
+// / (g tan bank) over the ground. It covers the clip and at least one second more. `camera` moves
+// with its stated position, velocity and attitude.
 void lay_path(scene::Intruder& intruder,
               const Encounter& encounter,
               const scene::Camera& camera,
               const DrawnClip& clip,
-              double range_m);
+              double provisional_range_m);
 
 // Gives an intruder of a scene its final path. Where the encounter has a size, the range is the one
 // at which the longest side of the exact box at the meeting moment has that size. The exact box
