@@ -13,15 +13,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/log.h"
 
-// The folder of a data set (docs/formats/dataset.md):
-//
-//   catalogue.toml        the catalogue from which the set is made
-//   backgrounds/          virtual flights, each with its mask and true camera
-//   sequences/<name>/     output of `airtruth render`; a sequence is whole or absent
-//   sequences/0001/<name>/  the same in a set of many sequences (dataset/sequences/layout.h)
-//   manifest/00000.jsonl  one line per sequence, 10,000 lines per file
-//   dataset.json          written last, once every sequence exists
-//   failed.jsonl          the sequences that could not be made, with the reason
+// Makes the folder of a data set (docs/formats/dataset.md; catalogue::Folder has its paths).
 namespace airtruth::build {
 
 struct BuildProgress {

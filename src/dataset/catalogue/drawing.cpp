@@ -248,7 +248,6 @@ DrawnSequence draw(const Drawn& rule,
   return result;
 }
 
-// Selects every 1/share-th sequence; the seed draws the offset.
 bool is_chosen(const std::string& what, double share, std::uint64_t seed, std::int64_t index) {
   return chosen_before(what, share, seed, index + 1) > chosen_before(what, share, seed, index);
 }

@@ -31,14 +31,7 @@ struct ClipFacts {
   std::map<std::string, double> weather;
 };
 
-// The labelled clips of a folder. The folder is a data set that `dataset build` made, complete or
-// not; the output of `dataset import`; or one or more sequences that `render` made.
-//
-// Example: a catalogue has two backgrounds, "sky" and "more", one trajectory "across", and two
-// aircraft, "b737" and "c172"; its product is named "{background}-{trajectory}-{aircraft}" and
-// every clip has 8 frames. Once it is built, names() returns the four names "more-across-b737",
-// "more-across-c172", "sky-across-b737" and "sky-across-c172", facts("sky-across-b737").frames is
-// 8, and missing() is 0.
+// The labelled clips of a folder: those of its sequences::SequenceFolders.
 class LabelledSet {
  public:
   // Throws Error where the folder holds no sequence.
