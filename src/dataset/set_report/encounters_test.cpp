@@ -65,7 +65,8 @@ TEST(Encounters, HistogramsCountEveryFrame) {
     frame.intruders[0].azimuth_deg = 5;
   }
   Portrait portrait;
-  portrait.centres.resize(Totals::kCells);
+  portrait.info.width = 64;
+  portrait.info.height = 48;
   Totals totals;
   totals.add(finished, portrait);
   for (const Histogram* of :

@@ -2,7 +2,6 @@
 #include "dataset/set_report/portrait.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "camera/lens/lens.h"
 #include "labels/annotation/object_class.h"
@@ -10,15 +9,6 @@
 
 namespace airtruth::set_report {
 namespace {
-
-// The cell of the picture that holds a box's centre.
-std::size_t cell_of(const PixelBox& box, int width, int height) {
-  const auto part = [](double at, double whole, int parts) {
-    return static_cast<std::size_t>(std::clamp(std::floor(at / whole * parts), 0.0, parts - 1.0));
-  };
-  return part(box.y + box.height / 2.0, height, Portrait::kCellRows) * Portrait::kCellColumns +
-         part(box.x + box.width / 2.0, width, Portrait::kCellColumns);
-}
 
 void widen(Portrait::Ends& ends, double value) {
   if (!ends) ends = {value, value};
@@ -28,7 +18,6 @@ void widen(Portrait::Ends& ends, double value) {
 void count(const replay::Finished& finished, Portrait& portrait) {
   std::optional<lens::Lens> lens;
   if (finished.scene) lens = lens::lens_of(finished.truth.lens);
-  portrait.centres.assign(Portrait::kCellColumns * Portrait::kCellRows, 0);
   for (const annotation::Frame& frame : finished.truth.frames) {
     bool is_seen = false;
     for (const annotation::Intruder& intruder : frame.intruders) {
@@ -42,10 +31,6 @@ void count(const replay::Finished& finished, Portrait& portrait) {
         widen(portrait.size_px, std::max(shown->width, shown->height));
         if (intruder.range_m) widen(portrait.range_m, *intruder.range_m);
       }
-      const auto box = labelled_box(finished, intruder);
-      if (!box) continue;
-      ++portrait.boxes_by_class[sequences::category_of(intruder)];
-      ++portrait.centres[cell_of(*box, portrait.info.width, portrait.info.height)];
     }
     portrait.frames_with_intruder += is_seen ? 1 : 0;
   }

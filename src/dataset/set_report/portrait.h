@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -20,10 +19,6 @@ namespace airtruth::set_report {
 
 // What the report page and the data card count of one sequence, and its pictures.
 struct Portrait {
-  // The grid of cells over the picture in which the centres of boxes are counted.
-  static constexpr int kCellColumns = 32;
-  static constexpr int kCellRows = 24;
-
   labelled::ClipFacts facts;
   video::StreamInfo info;
   std::optional<scene::Scene> scene;  // the effective scene; empty for an imported clip
@@ -37,9 +32,6 @@ struct Portrait {
   std::int64_t without_box = 0;
   // Frames that show an aircraft, with a label or without.
   std::int64_t frames_with_intruder = 0;
-  std::map<std::string, std::int64_t> boxes_by_class;
-  // Number of centres of these boxes in each cell, row by row from the top.
-  std::vector<std::int64_t> centres;
   // The least and the greatest of all frames that show an aircraft: its range, and the longer side
   // of its box.
   using Ends = std::optional<std::pair<double, double>>;
@@ -47,13 +39,6 @@ struct Portrait {
   Ends size_px;
   Film film;
 };
-
-// The box of the intruder's label: its covered box, of an imported clip its own. Empty where it has
-// no label, as what is visible without covering a pixel.
-inline std::optional<PixelBox> labelled_box(const replay::Finished& finished,
-                                            const annotation::Intruder& intruder) {
-  return finished.scene ? intruder.covered_box_px : intruder.visible_box_px;
-}
 
 // `finished`: the sequence of that name. `stills` is the highest number of pictures in its film; 0:
 // no film, and no frame is decoded.

@@ -43,13 +43,6 @@ std::set<std::size_t> sampled_frames(const annotation::Truth& truth) {
   return drawing::spread_over(truth.frames.size(), 120);
 }
 
-template <typename Row, typename Value>
-Json column(const std::vector<Row>& rows, const Value& value) {
-  Json values = Json::array();
-  for (const Row& row : rows) values.push_back(value(row));
-  return values;
-}
-
 // The series are stored in columns because a page of a thousand sequences holds a hundred thousand
 // points.
 void add_place(const std::optional<std::array<double, 3>>& ned_m, Json& series) {
@@ -130,15 +123,16 @@ bool plays_in_browsers(const fs::path& video) {
 }
 
 Json film_json(const Film& film) {
-  return column(film.stills, [](const Film::Still& still) {
-    const auto box_of = [](const Film::Marked& one) {
-      return Json{one.intruder, one.box.x, one.box.y, one.box.width, one.box.height};
-    };
-    Json json{{"frame", still.frame}, {"boxes", column(still.boxes, box_of)}};
+  Json stills = Json::array();
+  for (const Film::Still& still : film.stills) {
+    Json boxes = Json::array();
+    for (const auto& [intruder, box] : still.boxes)
+      boxes.push_back(Json{intruder, box.x, box.y, box.width, box.height});
+    Json& json = stills.emplace_back(Json{{"frame", still.frame}, {"boxes", boxes}});
     const drawing::Cutout& close = still.close;
     if (!close.jpeg.empty()) json["zoom"] = {close.x, close.y, close.px};
-    return json;
-  });
+  }
+  return stills;
 }
 
 // The mean contrast over the frames of the film; null without any.
@@ -233,7 +227,6 @@ Gallery gallery_of(const labelled::LabelledSet& labelled,
     const std::lock_guard lock(mutex);
     // Sums of whole numbers, the same in any order.
     gallery.totals.add(finished, portrait);
-    portrait.centres = {};
     gallery.portraits[i] = std::move(portrait);
   });
   return gallery;
@@ -263,8 +256,8 @@ Json json_of(const Totals& totals) {
           {"negative_sequences", totals.negative_sequences},
           {"classes", totals.boxes_by_class},
           {"centres",
-           {{"columns", Portrait::kCellColumns},
-            {"rows", Portrait::kCellRows},
+           {{"columns", Totals::kCellColumns},
+            {"rows", Totals::kCellRows},
             {"counts", totals.centres}}},
           {"plots", plots},
           // Of intruders, in their order.

@@ -2,6 +2,7 @@
 #include "dataset/set_report/totals.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "dataset/set_report/encounters.h"
@@ -45,6 +46,22 @@ plot::Plot bars(const std::map<std::string, std::int64_t>& counts, const std::st
   return bars("encounters", names, heights);
 }
 
+// The box of the intruder's label: its covered box, of an imported clip its own. Empty where it has
+// no label, as what is visible without covering a pixel.
+std::optional<PixelBox> labelled_box(const replay::Finished& finished,
+                                     const annotation::Intruder& intruder) {
+  return finished.scene ? intruder.covered_box_px : intruder.visible_box_px;
+}
+
+// The cell of the picture that holds a box's centre.
+std::size_t cell_of(const PixelBox& box, const video::StreamInfo& info) {
+  const auto part = [](double at, double whole, int parts) {
+    return static_cast<std::size_t>(std::clamp(std::floor(at / whole * parts), 0.0, parts - 1.0));
+  };
+  return part(box.y + box.height / 2.0, info.height, Totals::kCellRows) * Totals::kCellColumns +
+         part(box.x + box.width / 2.0, info.width, Totals::kCellColumns);
+}
+
 constexpr const char* kNoMeeting = "hovering";
 constexpr const char* kNeverSeen = "never seen";
 
@@ -72,12 +89,13 @@ void Totals::add(const replay::Finished& finished, const Portrait& portrait) {
   without_box += portrait.without_box;
   frames_with_intruder += portrait.frames_with_intruder;
   negative_sequences += portrait.frames_with_intruder == 0 ? 1 : 0;
-  for (const auto& [name, boxes] : portrait.boxes_by_class) boxes_by_class[name] += boxes;
-  for (std::size_t i = 0; i < centres.size(); ++i) centres[i] += portrait.centres[i];
   for (const annotation::Frame& frame : finished.truth.frames)
     for (const annotation::Intruder& intruder : frame.intruders) {
       const auto box = labelled_box(finished, intruder);
-      if (!box || !annotation::is_aircraft(intruder.object_class)) continue;
+      if (!box) continue;
+      ++boxes_by_class[sequences::category_of(intruder)];
+      ++centres[cell_of(*box, portrait.info)];
+      if (!annotation::is_aircraft(intruder.object_class)) continue;
       size_px.add(std::max(box->width, box->height));
       if (intruder.range_m) range_m.add(*intruder.range_m);
       if (intruder.azimuth_deg) azimuth_deg.add(*intruder.azimuth_deg);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -26,8 +25,9 @@ struct Histogram {
 // Counts over a whole data set, made from its portraits and from every frame of its truth. Contrast
 // alone is of the frames of the films' loops, which are decoded.
 struct Totals {
-  // Number of cells over the picture.
-  static constexpr std::size_t kCells = std::size_t{Portrait::kCellColumns} * Portrait::kCellRows;
+  // The grid of cells over the picture in which the centres of boxes are counted.
+  static constexpr int kCellColumns = 32;
+  static constexpr int kCellRows = 24;
 
   std::int64_t frames = 0;
   // Aircraft, one count a frame, by state: visible, hidden, outside, behind, ended.
@@ -39,7 +39,7 @@ struct Totals {
   std::int64_t negative_sequences = 0;
   std::map<std::string, std::int64_t> boxes_by_class;
   // Centres of boxes by cell of the picture, row by row.
-  std::vector<std::int64_t> centres = std::vector<std::int64_t>(kCells);
+  std::vector<std::int64_t> centres = std::vector<std::int64_t>(kCellColumns * kCellRows);
   Histogram range_m{
       {0, 50, 100, 150, 200, 300, 400, 600, 800, 1000, 1500, 2000, 3000, 5000, 10000}};
   Histogram size_px{{0, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 1024}};
