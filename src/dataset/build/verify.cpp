@@ -205,7 +205,7 @@ class Check {
       for (const annotation::Intruder& intruder : frame.intruders) {
         box(frame, intruder, width, height);
         view(frame, intruder, lens);
-        if (finished.scene && finished.scene->output.masks) mask(finished, frame, intruder);
+        if (finished.scene->output.masks) mask(finished, frame, intruder);
       }
     result_.frames += static_cast<std::int64_t>(finished.truth.frames.size());
   }
@@ -258,7 +258,6 @@ class Check {
   void contrast(const replay::Finished& finished,
                 const annotation::Frame& frame,
                 const image::Picture& picture) {
-    if (!finished.scene) return;
     const bool is_lossless = finished.scene->output.video == video::Format::kMkv;
     for (const annotation::Intruder& intruder : frame.intruders) {
       const auto box = annotation::box_to_show(intruder);
