@@ -96,8 +96,8 @@ void read_intruders(const TableReader& table, double usual_negatives, Drawn& dra
 // A clip may begin at a random frame only where the camera flies equally steadily at any time. A
 // camera path is tied to the frame at which it begins.
 void read_start(const TableReader& table, const Catalogue& catalogue, Drawn& drawn) {
-  drawn.start = table.choice<ClipStart>("start").value_or(drawn.start);
-  if (drawn.start != ClipStart::kRandom) return;
+  drawn.starts_at_random = table.choice("start", {"first", "random"}) == "random";
+  if (!drawn.starts_at_random) return;
   for (const std::size_t i : drawn.backgrounds)
     if (catalogue.backgrounds[i].camera.path_file || catalogue.backgrounds[i].camera.log)
       table.fail("start",

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "dataset/catalogue/table_values.h"
-#include "foundation/base/names.h"
 #include "foundation/base/seed.h"
 #include "scene/scene/camera_keys.h"
 #include "scene/scene/scene.h"
@@ -101,15 +100,6 @@ struct DaytimeRange {
   int day_of_year = 172;
 };
 
-// The frame of the background at which a clip begins: the background's first_frame, or a random
-// frame at which the clip fits.
-enum class ClipStart { kFirst, kRandom };
-
-constexpr auto enum_names(ClipStart) {
-  return std::to_array<EnumName<ClipStart>>(
-      {{ClipStart::kFirst, "first"}, {ClipStart::kRandom, "random"}});
-}
-
 // Where an intruder is at its meeting moment.
 struct MeetingPlace {
   Range range_m{100, 2000};
@@ -147,7 +137,8 @@ struct Drawn : NumberedRule {
   WholeRange intruders;
   // True: ids are intruder-1, intruder-2, ...; false: the id is "intruder".
   bool numbers_intruders = false;
-  ClipStart start = ClipStart::kFirst;
+  // True: the clip begins at a random frame at which it fits; false: at the background's first.
+  bool starts_at_random = false;
 };
 
 // Reads the tables [[random]] of a catalogue whose backgrounds have been read. Throws Error with

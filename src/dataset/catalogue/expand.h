@@ -46,10 +46,10 @@ struct Item {
   scene::Scene scene;
   const Drawn* rule = nullptr;  // the rule of [[random]]; nullptr for a listed sequence
   DrawnSequence drawn;          // valid where there is a rule
-  // In place of the background's first_frame, and of the rule's start.
+  // In place of the background's first_frame, and of a random one.
   std::optional<std::int64_t> first_frame;
   // True where the clip begins at a drawn frame of its background.
-  bool has_random_start() const { return rule != nullptr && rule->start == ClipStart::kRandom; }
+  bool has_random_start() const { return rule != nullptr && rule->starts_at_random; }
   // In the scene already, with provisional places until place().
   DrawnDistractors distractors;
   // Of a sequence of [[encounter_model]]: its rule, and its number there. It has no aircraft until
