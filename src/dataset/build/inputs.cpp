@@ -149,26 +149,22 @@ video::StreamInfo stream_of(const catalogue::Background& background) {
 
 namespace {
 
-void check_video(const catalogue::Background& background) {
+// Checks video, mask, lens, camera file and path of a background. Each sequence decides how much of
+// the clip it uses, and the camera's path must cover only that part.
+void check_background(const catalogue::Catalogue& catalogue, std::size_t place) {
+  const catalogue::Background& background = catalogue.backgrounds[place];
   const auto* video = std::get_if<fs::path>(&background.source);
   // The reader checks a pattern of numbered images.
   if (video != nullptr && video->string().find('%') == std::string::npos && !fs::exists(*video))
     throw Error("the video of background '" + background.name + "', " + video->string() +
                     ", does not exist",
                 background.where);
-}
-
-// Checks mask, lens, camera file and path of a background. Each sequence decides how much of the
-// clip it uses, and the camera's path must cover only that part.
-void check_background(const catalogue::Catalogue& catalogue, std::size_t place) {
-  const catalogue::Background& background = catalogue.backgrounds[place];
-  check_video(background);
-  if (std::holds_alternative<synthetic::FlightOptions>(background.source) && background.mask)
+  if (video == nullptr && background.mask)
     throw Error("mask has no effect with flight, which has a mask of its own", background.where);
   scene::Scene scene = catalogue::scene_over(catalogue, place);
   scene.background.mask = background.mask;
   // A log on the video's clock is asked for its part from there on.
-  if (const auto* video = std::get_if<fs::path>(&background.source)) {
+  if (video != nullptr) {
     scene.background.video = *video;
     scene.background.first_frame = background.first_frame;
   }
