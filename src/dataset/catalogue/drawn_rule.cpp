@@ -30,6 +30,14 @@ std::optional<Range> range_or_type(const TableReader& table,
   return maybe_range(table, key, limits);
 }
 
+std::string index_pattern(const TableReader& table, const char* usual) {
+  const std::string pattern = table.file_name("name").value_or(usual);
+  expect_parts(table, pattern, {"{index}"});
+  if (pattern.find("{index}") == std::string::npos)
+    table.fail("name", "name has no {index}; every sequence needs its own");
+  return pattern;
+}
+
 // Says that a pattern fits no aircraft, and what would.
 std::string no_aircraft_fits(const std::string& pattern) {
   const std::string text = "no aircraft fits '" + pattern + "'";

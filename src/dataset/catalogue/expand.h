@@ -10,13 +10,7 @@
 #include "dataset/catalogue/distractors.h"
 #include "dataset/catalogue/drawing.h"
 
-namespace airtruth::setup {
-class SharedInputs;
-}  // namespace airtruth::setup
-
 namespace airtruth::catalogue {
-
-struct DrawnClip;
 
 // The files of a background on this machine, and the facts of its video.
 struct BackgroundFiles {

@@ -7,14 +7,6 @@ namespace airtruth::catalogue {
 
 using scene::TableReader;
 
-std::string index_pattern(const TableReader& table, const char* usual) {
-  const std::string pattern = table.file_name("name").value_or(usual);
-  expect_parts(table, pattern, {"{index}"});
-  if (pattern.find("{index}") == std::string::npos)
-    table.fail("name", "name has no {index}; every sequence needs its own");
-  return pattern;
-}
-
 void expect_parts(const TableReader& table,
                   const std::string& pattern,
                   const std::vector<std::string>& known) {

@@ -63,10 +63,6 @@ std::vector<std::size_t> places_of(const scene::TableReader& table,
   return result;
 }
 
-// The pattern of names at the key `name`, which has {index}. Throws Error for another part in
-// braces.
-std::string index_pattern(const scene::TableReader& table, const char* usual);
-
 // Throws Error where the pattern of names at the key `name` has a part in braces that is not one of
 // `known`, such as "{index}".
 void expect_parts(const scene::TableReader& table,
