@@ -23,31 +23,16 @@ cv::Matx33d cv_from_homography(const Homography& h) {
   return cv::Matx33d(centred.data()).t();  // Eigen holds columns, OpenCV rows
 }
 
-const cv::Vec3b kGreen(0, 255, 0);
-
-bool is_green(const cv::Vec3b& rgb, int tolerance) {
-  return rgb[0] <= tolerance && rgb[1] >= 255 - tolerance && rgb[2] <= tolerance;
-}
-
-void paste(const cv::Mat3b& virtual_image, cv::Mat3b& background) {
-  for (int y = 0; y < background.rows; ++y) {
-    const cv::Vec3b* from = virtual_image[y];
-    cv::Vec3b* to = background[y];
-    for (int x = 0; x < background.cols; ++x)
-      if (from[x] != kGreen) to[x] = from[x];
-  }
-}
+const cv::Scalar kGreen(0, 255, 0);
 
 // 255 where the picture takes its pixel from C.
 std::vector<unsigned char> replaced_pixels(const cv::Mat3b& d, const ChromaKeyOptions& options) {
   std::vector<unsigned char> replaced(pixels_in(d.rows, d.cols));
-  std::size_t i = 0;
-  for (int y = 0; y < d.rows; ++y) {
-    for (int x = 0; x < d.cols; ++x, ++i) {
-      const bool free = options.own_aircraft == nullptr || options.own_aircraft->is_free(x, y);
-      replaced[i] = free && !is_green(d(y, x), options.green_tolerance) ? 255 : 0;
-    }
-  }
+  cv::Mat1b shows(d.rows, d.cols, replaced.data());
+  const int t = options.green_tolerance;
+  cv::inRange(d, cv::Scalar(0, 255 - t, 0), cv::Scalar(t, 255, t), shows);
+  cv::bitwise_not(shows, shows);
+  if (options.own_aircraft != nullptr) shows.setTo(0, image::mat_of(*options.own_aircraft) < 128);
   return replaced;
 }
 
@@ -138,15 +123,11 @@ std::vector<unsigned char> composite_chroma_key(image::Picture& frame,
                       cv::INTER_LANCZOS4 | cv::WARP_INVERSE_MAP,
                       cv::BORDER_REPLICATE);
   cv::Mat3b b = a.clone();
-  paste(virtual_view, b);
+  cv::Mat1b is_green;
+  cv::inRange(virtual_view, kGreen, kGreen, is_green);
+  virtual_view.copyTo(b, ~is_green);
   cv::warpPerspective(b, c, h, size, cv::INTER_LANCZOS4, cv::BORDER_REPLICATE);
-  cv::warpPerspective(virtual_view,
-                      d,
-                      h,
-                      size,
-                      cv::INTER_LANCZOS4,
-                      cv::BORDER_CONSTANT,
-                      cv::Scalar(kGreen[0], kGreen[1], kGreen[2]));
+  cv::warpPerspective(virtual_view, d, h, size, cv::INTER_LANCZOS4, cv::BORDER_CONSTANT, kGreen);
   std::vector<unsigned char> replaced = replaced_pixels(d, options);
   PlaneWriter(frame, c, replaced).write();
   if (images != nullptr)
