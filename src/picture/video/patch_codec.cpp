@@ -67,22 +67,14 @@ class Loop {
   }
   // Returns the second of two pictures after decoding. The first is a key picture, and the second
   // is predicted from it.
-  void run(const Picture& reference, const Picture& patch, Picture& decoded) {
+  Picture run(const Picture& reference, const Picture& patch) {
     encode(reference, AV_PICTURE_TYPE_I);
     encode(patch, AV_PICTURE_TYPE_P);
     send(nullptr);
     check(last_->width == patch.width && last_->height == patch.height && last_->data[0] != nullptr,
           "a decoder gives back the picture's size");
-    for (int i = 0; i < decoded.plane_count; ++i) {
-      image::Plane& plane = decoded.planes[static_cast<std::size_t>(i)];
-      av_image_copy_plane(plane.row(0),
-                          plane.stride,
-                          last_->data[i],
-                          last_->linesize[i],
-                          plane.width,
-                          plane.height);
-    }
     avcodec_flush_buffers(decoder_.get());
+    return picture_of(*last_, Layout{}, patch.colour);
   }
 
  private:
@@ -150,9 +142,7 @@ Picture PatchCodec::coded(const Picture& patch, const Picture& reference) {
     loop = loops.begin();
   }
   loops.splice(loops.begin(), loops, loop);
-  Picture decoded = image::make_picture(patch.width, patch.height, patch.colour);
-  loops.front().run(reference, patch, decoded);
-  return decoded;
+  return loops.front().run(reference, patch);
 }
 
 }  // namespace airtruth::video
