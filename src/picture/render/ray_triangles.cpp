@@ -138,29 +138,10 @@ double bend_px(const Vector3& from,
 // A triangle at one moment.
 struct Moment {
   // The four functions by axis.
-  Eigen::Matrix<double, 3, 4> functions = Eigen::Matrix<double, 3, 4>::Zero();
+  Eigen::Matrix<double, 3, 4> functions;
   double determinant = 0;
   double nearest = 0;
   double farthest = 0;
-
-  Moment() = default;
-  // `twice_area_m2` and `longest_m`: of the triangle. `distance_m`: of its corners.
-  Moment(const Corners& p,
-         const std::array<double, 3>& distance_m,
-         double twice_area_m2,
-         double longest_m) {
-    functions.col(0) = p[1].cross(p[2]);
-    functions.col(1) = p[2].cross(p[0]);
-    functions.col(2) = p[0].cross(p[1]);
-    determinant = p[0].dot(functions.col(0));
-    const Vector3 normal = functions.col(0) + functions.col(1) + functions.col(2);
-    functions.col(3) = normal / determinant;
-    const auto& [a, b, c] = distance_m;
-    // No point is nearer than the plane, nor farther from a corner than the longest side.
-    const double plane_m = twice_area_m2 > 0 ? std::abs(determinant) / twice_area_m2 : 0;
-    nearest = 1 / std::max({plane_m, std::min({a, b, c}) - longest_m, 1e-6});
-    farthest = 1 / std::max({a, b, c, 1e-6});
-  }
 };
 
 }  // namespace
@@ -243,11 +224,22 @@ class RayTriangles::Projected {
 
   Moment moment(std::size_t triangle, std::size_t k) const {
     const shade::PartGeometry::Triangle& of = part_.triangles[triangle];
-    const auto& [a, b, c] = of.vertex;
-    return {{in_cam_[k][a], in_cam_[k][b], in_cam_[k][c]},
-            {vertex(a).distance_m[k], vertex(b).distance_m[k], vertex(c).distance_m[k]},
-            of.front_length_m2,
-            of.longest_m};
+    const auto [a, b, c] = corners(triangle, k);
+    Moment result;
+    result.functions << b.cross(c), c.cross(a), a.cross(b), Vector3::Zero();
+    result.determinant = a.dot(result.functions.col(0));
+    result.functions.col(3) =
+        (result.functions.col(0) + result.functions.col(1) + result.functions.col(2)) /
+        result.determinant;
+    const auto [least_m, most_m] = std::minmax({vertex(of.vertex[0]).distance_m[k],
+                                                vertex(of.vertex[1]).distance_m[k],
+                                                vertex(of.vertex[2]).distance_m[k]});
+    // No point is nearer than the plane, nor farther from a corner than the longest side.
+    const double plane_m =
+        of.front_length_m2 > 0 ? std::abs(result.determinant) / of.front_length_m2 : 0;
+    result.nearest = 1 / std::max({plane_m, least_m - of.longest_m, 1e-6});
+    result.farthest = 1 / std::max(most_m, 1e-6);
+    return result;
   }
 
   bool is_hidden(std::size_t triangle, shade::OuterSides outer) const {
