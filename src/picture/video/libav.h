@@ -5,6 +5,7 @@ extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/display.h>
+#include <libavutil/hwcontext.h>
 #include <libavutil/imgutils.h>
 #include <libavutil/opt.h>
 #include <libavutil/pixdesc.h>
@@ -125,8 +126,8 @@ struct Orientation {
   // The nearest of 0, 90, 180 and 270.
   int clockwise_deg = 0;
 };
-// The orientation of a libav display matrix (nine numbers, 16.16 fixed point). An invalid matrix
-// gives the identity.
+// The orientation of a libav display matrix (nine numbers, 16.16 fixed point). None, or an invalid
+// one, gives the identity.
 Orientation orientation_of(const std::int32_t* display_matrix);
 
 // The picture with the orientation applied. Every sample keeps its value.

@@ -7,10 +7,6 @@
 #include "picture/video/media_file.h"
 #include "picture/video/numbered_images.h"
 
-extern "C" {
-#include <libavutil/dict.h>
-}
-
 namespace airtruth::video {
 namespace {
 

@@ -21,10 +21,6 @@
 #include "picture/video/media_file.h"
 #include "picture/video/still.h"
 
-extern "C" {
-#include <libavutil/hwcontext.h>
-}
-
 namespace airtruth::video {
 namespace {
 
@@ -56,35 +52,14 @@ Picture with_full_range(const Picture& picture, const Colour& to) {
   return result;
 }
 
-// Luma, and Cb and Cr as pairs.
-void fill_nv12(AVFrame& frame, const Picture& picture) {
-  const auto row = [&](int plane, int y) {
-    return frame.data[plane] + static_cast<std::ptrdiff_t>(y) * frame.linesize[plane];
-  };
-  for (int y = 0; y < picture.height; ++y)
-    std::memcpy(row(0, y), picture.luma().row(y), static_cast<std::size_t>(picture.width));
-  for (int y = 0; y < picture.planes[1].height; ++y)
-    for (int x = 0; x < picture.planes[1].width; ++x) {
-      row(1, y)[2 * x] = picture.planes[1].row(y)[x];
-      row(1, y)[2 * x + 1] = picture.planes[2].row(y)[x];
-    }
-}
-
-void fill_frame(AVFrame& frame, const Picture& picture) {
-  if (frame.format == AV_PIX_FMT_NV12) return fill_nv12(frame, picture);
-  if (picture.colour.matrix == Matrix::kRgb) {
-    for (int y = 0; y < picture.height; ++y) {
-      std::uint8_t* row = frame.data[0] + static_cast<std::ptrdiff_t>(y) * frame.linesize[0];
-      for (int x = 0; x < picture.width; ++x) {
-        row[4 * x] = picture.planes[1].row(y)[x];
-        row[4 * x + 1] = picture.planes[0].row(y)[x];
-        row[4 * x + 2] = picture.planes[2].row(y)[x];
-        row[4 * x + 3] = 255;
-      }
-    }
-    return;
-  }
-  copy_planes(picture, frame);
+// The picture's samples in a pixel format, whose planes are the picture's own or are packed.
+FramePtr frame_of(const Picture& picture, AVPixelFormat format) {
+  const AVPixelFormat planar = format == AV_PIX_FMT_BGR0   ? AV_PIX_FMT_GBRP
+                               : format == AV_PIX_FMT_NV12 ? AV_PIX_FMT_YUV420P
+                                                           : format;
+  FramePtr frame = new_frame(planar, picture.width, picture.height);
+  copy_planes(picture, *frame);
+  return planar == format ? std::move(frame) : in_format(*frame, format);
 }
 
 // H.264 halves chroma in whole samples. libx264 also refuses such a size, but leaks memory when it
@@ -134,18 +109,6 @@ void check_time(std::int64_t count, std::int64_t pts, const StreamInfo& info, co
 AVPixelFormat pixel_format(const Colour& colour, Format format) {
   if (colour.matrix == Matrix::kRgb) return AV_PIX_FMT_BGR0;
   return planar_format(colour.chroma, format == Format::kAvi);
-}
-
-// Copies the picture, converted to the colour `stored`, to the buffers of a frame.
-void fill_frame_as(AVFrame& frame, const Picture& picture, const Colour& stored, Format format) {
-  const Colour& colour = picture.colour;
-  const bool keeps_matrix = colour.chroma == Chroma::kNone || colour.matrix == stored.matrix;
-  if (keeps_matrix && format == Format::kAvi && colour.range == Range::kLimited)
-    fill_frame(frame, with_full_range(picture, stored));
-  else if (keeps_matrix && stored.chroma == colour.chroma)
-    fill_frame(frame, picture);
-  else  // through packed sRGB, as the format cannot store the picture's own colour
-    fill_frame(frame, image::picture_from_rgb8(image::rgb8_from_picture(picture), stored));
 }
 
 using BufferPtr = std::unique_ptr<AVBufferRef, Free<av_buffer_unref>>;
@@ -345,17 +308,24 @@ CodecPtr open_encoder(const EncoderInput& input,
   return std::move(result.codec);
 }
 
-// A frame of the encoder's size and pixel format with a copy of the picture, converted to the
-// colour `stored`; in the memory of the encoder's device where it has one. Throws std::bad_alloc,
-// and Error where the device takes no frame.
+// A copy of the picture for the encoder, converted to the colour `stored`; in the memory of the
+// encoder's device where it has one. Throws std::bad_alloc, and Error where the device takes no
+// frame.
 FramePtr copied_frame(const AVCodecContext& encoder,
                       const image::Picture& picture,
                       const image::Colour& stored,
                       Format format) {
   const bool is_on_device = encoder.hw_frames_ctx != nullptr;
-  FramePtr frame =
-      new_frame(is_on_device ? AV_PIX_FMT_NV12 : encoder.pix_fmt, encoder.width, encoder.height);
-  fill_frame_as(*frame, picture, stored, format);
+  const AVPixelFormat pixels = is_on_device ? AV_PIX_FMT_NV12 : encoder.pix_fmt;
+  const Colour& colour = picture.colour;
+  const bool keeps_matrix = colour.chroma == Chroma::kNone || colour.matrix == stored.matrix;
+  FramePtr frame;
+  if (keeps_matrix && format == Format::kAvi && colour.range == Range::kLimited)
+    frame = frame_of(with_full_range(picture, stored), pixels);
+  else if (keeps_matrix && stored.chroma == colour.chroma)
+    frame = frame_of(picture, pixels);
+  else  // through packed sRGB, as the format cannot store the picture's own colour
+    frame = frame_of(image::picture_from_rgb8(image::rgb8_from_picture(picture), stored), pixels);
   if (is_on_device) frame = on_device(encoder, *frame);
   frame->color_range = encoder.color_range;
   frame->colorspace = encoder.colorspace;
