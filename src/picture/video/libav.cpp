@@ -230,12 +230,13 @@ void copy_planes(const Picture& picture, AVFrame& frame) {
 }
 
 Orientation orientation_of(const std::int32_t* m) {
+  Orientation result;
+  if (m == nullptr) return result;
   // x' = a x + c y, y' = b x + d y, with y down.
   double a = m[0];
   double b = m[1];
   const double c = m[3];
   const double d = m[4];
-  Orientation result;
   const double area = a * d - b * c;
   if (area == 0) return result;
   result.mirrored = area < 0;

@@ -27,11 +27,6 @@ namespace {
 
 Rational rational(AVRational r) { return {r.num, r.den == 0 ? 1 : r.den}; }
 
-Orientation orientation_of_stream(const AVStream& stream) {
-  const std::int32_t* matrix = display_matrix_of(stream);
-  return matrix == nullptr ? Orientation{} : orientation_of(matrix);
-}
-
 image::Siting siting_of(AVChromaLocation location) {
   return location == AVCHROMA_LOC_CENTER    ? image::Siting::kCenter
          : location == AVCHROMA_LOC_TOPLEFT ? image::Siting::kTopLeft
@@ -139,6 +134,7 @@ struct Reader::State {
   [[noreturn]] void fail(const std::string& message) const {
     throw Error(message, {path.string()});
   }
+  void tell(const std::string& text) const { airtruth::warn(warn, path.string() + ": " + text); }
 
   static std::unique_ptr<State> opened(const std::filesystem::path& path,
                                        const ReaderOptions& options,
@@ -160,11 +156,10 @@ struct Reader::State {
     if (options.first_frame > 0 && !state->go_to_first_frame() && !state->is_in_doubt()) {
       const bool is_known_end = state->info.frame_count_estimate <= options.first_frame;
       if (!is_known_end)
-        airtruth::warn(warn,
-                       fmt::format("{}: its frames cannot be found without decoding; the {} before "
-                                   "first_frame are decoded",
-                                   path.string(),
-                                   options.first_frame));
+        state->tell(
+            fmt::format("its frames cannot be found without decoding; the {} before first_frame "
+                        "are decoded",
+                        options.first_frame));
       state = opened(path, options, {});  // what it says was said
     }
     const bool holds_frame = state->look_ahead();
@@ -197,12 +192,9 @@ struct Reader::State {
     std::string rate;
     if (auto images = numbered_images(path)) {
       if (images->doubt != nullptr)
-        airtruth::warn(warn,
-                       fmt::format("{}: has {} of its {} pictures; they are taken as consecutive "
-                                   "frames",
-                                   path.string(),
-                                   images->doubt,
-                                   images->files.size()));
+        tell(fmt::format("has {} of its {} pictures; they are taken as consecutive frames",
+                         images->doubt,
+                         images->files.size()));
       pictures = std::move(images->files);
       info.is_of_pictures = true;
       info.is_rate_stated = options.picture_rate_hz.has_value();
@@ -258,10 +250,9 @@ struct Reader::State {
   void warn_of_fields(const AVStream& stream) const {
     const AVFieldOrder order = stream.codecpar->field_order;
     if (order == AV_FIELD_UNKNOWN || order == AV_FIELD_PROGRESSIVE) return;
-    airtruth::warn(warn,
-                   path.string() +
-                       ": is interlaced, and its frames are taken whole, each of two moments; "
-                       "`ffmpeg -i IN -vf bwdif OUT` makes a video of one picture for each field");
+    tell(
+        "is interlaced, and its frames are taken whole, each of two moments; `ffmpeg -i IN -vf "
+        "bwdif OUT` makes a video of one picture for each field");
   }
 
   void describe_stream(const AVStream& stream) {
@@ -274,7 +265,7 @@ struct Reader::State {
     info.variable_frame_rate =
         stream.avg_frame_rate.num > 0 && stream.r_frame_rate.num > 0 &&
         std::abs(av_q2d(stream.avg_frame_rate) / av_q2d(stream.r_frame_rate) - 1) > 0.01;
-    orientation = orientation_of_stream(stream);
+    orientation = orientation_of(display_matrix_of(stream));
     info.rotation_deg = orientation.clockwise_deg;
     info.frame_count_estimate = shown_frames(stream);
     info.is_frame_count_stated = info.frame_count_estimate > 0 || !pictures.empty();
@@ -298,9 +289,7 @@ struct Reader::State {
     layout = *known;
     info.pixel_format = name;
     if (layout.shift > 0)
-      airtruth::warn(warn,
-                     path.string() + ": has " + std::to_string(8 + layout.shift) +
-                         " bits a sample; they are rounded to 8");
+      tell("has " + std::to_string(8 + layout.shift) + " bits a sample; they are rounded to 8");
     coded_colour.chroma = layout.chroma;
     const auto matrix =
         layout.rgb ? image::Matrix::kRgb : matrix_of(first.colorspace, first.height);
@@ -619,11 +608,9 @@ struct Reader::State {
   // The parts of a recording, put together, may each begin their time stamps anew.
   std::int64_t after_reset(std::int64_t pts) {
     if (!std::exchange(reset_is_told, true))
-      airtruth::warn(
-          warn,
-          fmt::format("{}: its time stamps go back by {:.2f} s at frame {}; the frames from there "
-                      "on follow those before them",
-                      path.string(),
+      tell(
+          fmt::format("its time stamps go back by {:.2f} s at frame {}; the frames from there on "
+                      "follow those before them",
                       static_cast<double>(last_pts - pts) * info.time_base.value(),
                       decoded));
     pts_shift += last_pts + pts_step - pts;
@@ -646,13 +633,8 @@ struct Reader::State {
 
   void tell_end() {
     if (corrupt > 0 || damaged > 0)
-      airtruth::warn(warn,
-                     fmt::format("{}: {} corrupt packets; {} frames are flagged damaged",
-                                 path.string(),
-                                 corrupt,
-                                 damaged));
-    if (ends_early())
-      airtruth::warn(warn, fmt::format("{}: ends early, after {} frames", path.string(), handed));
+      tell(fmt::format("{} corrupt packets; {} frames are flagged damaged", corrupt, damaged));
+    if (ends_early()) tell(fmt::format("ends early, after {} frames", handed));
   }
 
   Frame to_frame() {
@@ -684,7 +666,7 @@ struct Reader::State {
     const AVPixelFormat plain = plain_kin(format);
     if (plain == AV_PIX_FMT_NONE) return;
     if (info.pixel_format.empty() && av_pix_fmt_desc_get(format)->comp[0].depth > 8)
-      airtruth::warn(warn, path.string() + ": has more than 8 bits a sample; they are taken to 8");
+      tell("has more than 8 bits a sample; they are taken to 8");
     frame = in_format(*frame, plain);
   }
 };
