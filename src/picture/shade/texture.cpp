@@ -43,16 +43,6 @@ Eigen::Vector2f TriangleTexture::uv(float u, float v) const {
   return (1 - u - v) * facet_->uv[0] + u * facet_->uv[1] + v * facet_->uv[2];
 }
 
-Texel TriangleTexture::texel(float u, float v) const {
-  if (texture_ == nullptr) return {1, 1, 1, 1};
-  const Eigen::Vector2f at = uv(u, v);
-  if (!model::is_sound(at)) return {1, 1, 1, 1};
-  Texel result;
-  Eigen::Map<Channels> channels(result.data());
-  channels = level_ == 0 ? finest_at(*texture_, at) : coarser_at(*texture_, level_ - 1, at);
-  return result;
-}
-
 float TriangleTexture::alpha(float u, float v) const {
   if (texture_ == nullptr) return 1;
   const Eigen::Vector2f at = uv(u, v);
@@ -62,11 +52,14 @@ float TriangleTexture::alpha(float u, float v) const {
 }
 
 Texel TriangleTexture::albedo(float u, float v) const {
-  Texel result = texel(u, v);
-  if (facet_->is_opaque && result[3] > 0 && result[3] < 1) {
-    const float alpha = result[3];
-    for (float& channel : result) channel = std::min(1.0f, channel / alpha);
-  }
+  if (texture_ == nullptr) return {1, 1, 1, 1};
+  const Eigen::Vector2f at = uv(u, v);
+  if (!model::is_sound(at)) return {1, 1, 1, 1};
+  Texel result;
+  Eigen::Map<Channels> channels(result.data());
+  channels = level_ == 0 ? finest_at(*texture_, at) : coarser_at(*texture_, level_ - 1, at);
+  if (const float alpha = channels[3]; facet_->is_opaque && alpha > 0 && alpha < 1)
+    channels = (channels / alpha).min(1.0f);
   return result;
 }
 

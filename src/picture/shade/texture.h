@@ -13,10 +13,8 @@ class TriangleTexture {
   // References mesh and facet. `footprint_m`: the width on the surface that a sample represents.
   TriangleTexture(const model::Mesh& mesh, const Facet& facet, float footprint_m);
   // By barycentric coordinates, as in Hit; white without a texture.
-  Texel texel(float u, float v) const;
   float alpha(float u, float v) const;
-  // The texel, without the holes that a coarse mip level mixes into an opaque triangle's own
-  // texels.
+  // Without the holes that a coarse mip level mixes into an opaque triangle's own texels.
   Texel albedo(float u, float v) const;
 
  private:
