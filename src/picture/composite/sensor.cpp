@@ -80,7 +80,7 @@ std::vector<float> noise_field(const PixelBox& patch,
   for (int y = around.y; y < around.bottom(); ++y)
     for (int x = around.x; x < around.right(); ++x) white.push_back(normal_at(key, x, y));
   if (reach == 0) return white;
-  blur(white, around.width, around.height, kernel);
+  blur(white, around.width, around.height, kernel, kernel);
   double power = 0;
   for (const float weight : kernel)
     power += static_cast<double>(weight) * static_cast<double>(weight);

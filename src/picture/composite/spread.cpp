@@ -87,10 +87,6 @@ void blur(std::vector<float>& values,
             row_of(from, source), down[static_cast<std::size_t>(k)], width, row_of(values, y));
 }
 
-void blur(std::vector<float>& values, int width, int height, const std::vector<float>& kernel) {
-  blur(values, width, height, kernel, kernel);
-}
-
 std::vector<float> blurred(const std::vector<float>& values,
                            const PixelBox& from,
                            const PixelBox& to,

@@ -43,8 +43,6 @@ void blur(std::vector<float>& values,
           int height,
           const std::vector<float>& across,
           const std::vector<float>& down);
-// The same kernel along both axes.
-void blur(std::vector<float>& values, int width, int height, const std::vector<float>& kernel);
 
 // The values of the pixels of a box after such a blur, for the pixels of another box. Both boxes
 // are inside the frame. Values outside `from` count as 0, but beyond the edge of the frame they are
