@@ -9,10 +9,6 @@
 namespace airtruth::composite {
 namespace {
 
-bool any_alpha(const AlphaMask& mask) {
-  return std::any_of(mask.alpha.begin(), mask.alpha.end(), [](std::uint8_t a) { return a > 0; });
-}
-
 std::vector<float> shares_past(const std::vector<const Occluder*>& before, const PixelBox& patch) {
   std::vector<float> shares;
   if (before.empty()) return shares;
@@ -53,7 +49,7 @@ AlphaMask alpha_mask(const image::Layer& layer, std::size_t intruder) {
   each_pixel(layer.coverage[intruder], [&](int x, int y, float share) {
     mask.alpha.push_back(layer.is_open(layer.index(x, y)) ? alpha_code(share) : 0);
   });
-  if (!any_alpha(mask)) mask = {};
+  if (std::ranges::max(mask.alpha) == 0) mask = {};
   return mask;
 }
 
