@@ -252,26 +252,19 @@ image::Layer empty_layer(const PixelBox& patch, const std::vector<PlacedInstance
 }
 
 // Fills the pixels of a layer.
-class Painter {
- public:
-  Painter(const View& view,
-          const shade::Light& light,
-          std::vector<PlacedInstance>& instances,
-          const PixelRays& rays,
-          const std::stop_token& stop,
-          image::Layer& layer)
-      : view_(view),
-        light_(light),
-        instances_(instances),
-        rays_(rays),
-        stop_(stop),
-        layer_(layer),
-        alone_(instances.size()) {
-    for (std::size_t a = 0; a < alone_.size(); ++a)
-      alone_[a].assign(layer.coverage[a].alpha.size(), 0.0);
-  }
+struct Painter {
+  const View& view;
+  const shade::Light& light;
+  std::vector<PlacedInstance>& instances;
+  const PixelRays& rays;
+  const std::stop_token& stop;
+  image::Layer& layer;
+  // By instance: as layer.coverage, without occlusion.
+  std::vector<std::vector<double>> alone = {};
 
   void paint(const SampleCounts& counts) {
+    for (const image::Coverage& coverage : layer.coverage)
+      alone.emplace_back(coverage.alpha.size(), 0.0);
     if (counts.by_rays)
       trace();
     else
@@ -289,26 +282,25 @@ class Painter {
 
   template <typename Row>
   void each_row(const Row& row) {
-    tbb::parallel_for(layer_.patch.y, layer_.patch.bottom(), [&](int y) {
-      if (!stop_.stop_requested()) row(y);
+    tbb::parallel_for(layer.patch.y, layer.patch.bottom(), [&](int y) {
+      if (!stop.stop_requested()) row(y);
     });
   }
 
   void trace() {
     each_row([&](int y) {
-      for (int x = layer_.patch.x; x < layer_.patch.right() && !stop_.stop_requested(); ++x) {
-        const RenderedPixel pixel = trace_pixel(view_, light_, instances_, x, y);
+      for (int x = layer.patch.x; x < layer.patch.right() && !stop.stop_requested(); ++x) {
+        const RenderedPixel pixel = trace_pixel(view, light, instances, x, y);
         if (pixel.alpha > 0) write(x, y, pixel);
       }
     });
   }
 
   void rasterise(const SampleCounts& counts) {
-    const PixelBox& patch = layer_.patch;
-    const RayTriangles triangles(view_, patch, rays_.span(), instances_);
+    const PixelBox& patch = layer.patch;
+    const RayTriangles triangles(view, patch, rays.span(), instances);
     tbb::enumerable_thread_specific<Scratch> scratch([&] {
-      return Scratch{
-          {triangles, instances_, rays_, counts}, {triangles, instances_, rays_, light_}, {}};
+      return Scratch{{triangles, instances, rays, counts}, {triangles, instances, rays, light}, {}};
     });
     each_row([&](int y) {
       Scratch& here = scratch.local();
@@ -324,50 +316,40 @@ class Painter {
     auto& [visibility, shading, pixel] = scratch;
     pixel.light = shading.light_of(visibility, x, y);
     pixel.alpha = visibility.alpha();
-    pixel.coverage.assign(instances_.size(), 0.0);
+    pixel.coverage.assign(instances.size(), 0.0);
     for (const VisibleSurface& surface : visibility.surfaces())
       pixel.coverage[visibility.instance_of(surface)] += static_cast<double>(surface.weight);
     pixel.alone = pixel.coverage;
     if (visibility.has_several())
-      for (std::uint32_t i = 0; i < instances_.size(); ++i) pixel.alone[i] = visibility.alpha_of(i);
+      for (std::uint32_t i = 0; i < instances.size(); ++i) pixel.alone[i] = visibility.alpha_of(i);
     write(x, y, pixel);
   }
 
   void write(int x, int y, const RenderedPixel& pixel) {
     const auto& [rgb, distance_m] = pixel.light;
-    const std::size_t i = layer_.index(x, y);
-    layer_.pixels[i] = {static_cast<float>(rgb[0]),
-                        static_cast<float>(rgb[1]),
-                        static_cast<float>(rgb[2]),
-                        static_cast<float>(std::min(1.0, pixel.alpha))};
-    layer_.depth_m[i] = static_cast<float>(distance_m / pixel.alpha);
-    for (std::size_t a = 0; a < instances_.size(); ++a) {
-      image::Coverage& of = layer_.coverage[a];
+    const std::size_t i = layer.index(x, y);
+    layer.pixels[i] = {static_cast<float>(rgb[0]),
+                       static_cast<float>(rgb[1]),
+                       static_cast<float>(rgb[2]),
+                       static_cast<float>(std::min(1.0, pixel.alpha))};
+    layer.depth_m[i] = static_cast<float>(distance_m / pixel.alpha);
+    for (std::size_t a = 0; a < instances.size(); ++a) {
+      image::Coverage& of = layer.coverage[a];
       if (!of.box.contains(x, y)) continue;
       of.alpha[of.index(x, y)] = static_cast<float>(pixel.coverage[a]);
-      alone_[a][of.index(x, y)] = pixel.alone[a];
+      alone[a][of.index(x, y)] = pixel.alone[a];
     }
   }
 
   void add_areas() {
-    for (std::size_t a = 0; a < instances_.size(); ++a) {
-      image::Areas& areas = layer_.areas[a];
-      for (const float share : layer_.coverage[a].alpha)
-        areas.seen_px += static_cast<double>(share);
-      for (const double share : alone_[a]) areas.alone_in_frame_px += share;
+    for (std::size_t a = 0; a < instances.size(); ++a) {
+      image::Areas& areas = layer.areas[a];
+      for (const float share : layer.coverage[a].alpha) areas.seen_px += static_cast<double>(share);
+      for (const double share : alone[a]) areas.alone_in_frame_px += share;
       areas.free_px = areas.clear_px = areas.seen_px;
       areas.alone_px = areas.alone_in_frame_px;
     }
   }
-
-  const View& view_;
-  const shade::Light& light_;
-  std::vector<PlacedInstance>& instances_;
-  const PixelRays& rays_;
-  const std::stop_token& stop_;
-  image::Layer& layer_;
-  // By instance: as layer_.coverage, without occlusion.
-  std::vector<std::vector<double>> alone_;
 };
 
 }  // namespace
@@ -391,7 +373,7 @@ image::Layer render(const View& view,
   image::Layer layer = empty_layer(patch.value_or(PixelBox{}), placed);
   if (patch) {
     const PixelRays rays(view, *patch);
-    Painter(view, light, placed, rays, options.stop, layer).paint(counts);
+    Painter{view, light, placed, rays, options.stop, layer}.paint(counts);
   }
   for (std::size_t a = 0; a < placed.size(); ++a)
     if (search[a]) layer.areas[a].alone_px += area_outside(view, placed[a], *search[a]);
