@@ -2,7 +2,7 @@
 #include "picture/backdrop/backdrop.h"
 
 #include "foundation/lazy_library/lazy_library.h"
-#include "picture/backdrop/backdrop.h"
+
 namespace airtruth::backdrop {
 
 std::unique_ptr<Backdrop> open_backdrop(int width, int height, const Options& options) {

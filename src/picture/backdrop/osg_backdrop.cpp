@@ -50,10 +50,6 @@ std::optional<Box> box_of_sphere(const PinholeView& view,
   return Box{middle.x() - reach.x(), middle.y() - reach.y(), 2 * reach.x(), 2 * reach.y()};
 }
 
-bool overlap(const Box& a, const Box& b) {
-  return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
-}
-
 // The mean over each pixel's block of samples. The first row of `samples` is the bottom row.
 std::array<float, 4> block_mean(
     const std::vector<std::array<float, 4>>& samples, int stride, int x, int y, int size) {
@@ -207,7 +203,7 @@ class OsgBackdrop final : public Backdrop {
     shading_.set_encoding(Encoding::kSrgb);
     stage(view, light, instances);
     if (!green_) green_ = std::make_unique<FrameBuffer>(*gl_, width_, height_, GL_RGBA8, kSamples);
-    const Box frame{0, 0, static_cast<double>(width_), static_cast<double>(height_)};
+    const Box frame = as_box({0, 0, width_, height_});
     draw(*green_, view, frame, {0, 1, 0, 1});
     const std::size_t row_bytes = 3 * static_cast<std::size_t>(width_);
     std::vector<std::uint8_t> upside_down(row_bytes * static_cast<std::size_t>(height_));
@@ -239,13 +235,9 @@ class OsgBackdrop final : public Backdrop {
     std::vector<std::array<float, 4>> samples(pixels_in(size, size));
     for (int y0 = 0; y0 < height_; y0 += tile_px) {
       for (int x0 = 0; x0 < width_; x0 += tile_px) {
-        const Box in_frame{static_cast<double>(x0),
-                           static_cast<double>(y0),
-                           static_cast<double>(tile_px),
-                           static_cast<double>(tile_px)};
-        if (std::none_of(
-                boxes.begin(), boxes.end(), [&](const Box& box) { return overlap(box, in_frame); }))
-          continue;
+        const Box in_frame = as_box({x0, y0, tile_px, tile_px});
+        const auto is_in = [&](const Box& box) { return intersection(box, in_frame).has_value(); };
+        if (std::ranges::none_of(boxes, is_in)) continue;
         draw(*tile_, view, in_frame, {0, 0, 0, 0});
         tile_->read(GL_RGBA, GL_FLOAT, samples.data());
         for (int y = y0; y < std::min(y0 + tile_px, height_); ++y) {
@@ -285,13 +277,13 @@ class OsgBackdrop final : public Backdrop {
     std::map<const model::Mesh*, std::size_t> used;
     near_m_ = 1e9;
     far_m_ = 0;
-    const Box frame{0, 0, static_cast<double>(width_), static_cast<double>(height_)};
+    const Box frame = as_box({0, 0, width_, height_});
     for (const Instance& instance : instances) {
       check(instance.mesh != nullptr, "an instance has a mesh");
       OsgMesh& mesh = instance_of(*instance.mesh, used[instance.mesh]++);
       const Vector3& centre_in_world = instance.world_from_body.translation;
       const auto box = box_of_sphere(view, centre_in_world, mesh.radius_m(), frame);
-      if (!box || !overlap(*box, frame)) continue;
+      if (!box || !intersection(*box, frame)) continue;
       boxes.push_back(*box);
       mesh.place(instance, view.cam_from_world);
       root_->addChild(mesh.node());
