@@ -300,7 +300,7 @@ struct Painter {
     const PixelBox& patch = layer.patch;
     const RayTriangles triangles(view, patch, rays.span(), instances);
     tbb::enumerable_thread_specific<Scratch> scratch([&] {
-      return Scratch{{triangles, instances, rays, counts}, {triangles, instances, rays, light}, {}};
+      return Scratch{{triangles, instances, rays, counts}, {instances, rays, light}, {}};
     });
     each_row([&](int y) {
       Scratch& here = scratch.local();
@@ -318,7 +318,8 @@ struct Painter {
     pixel.alpha = visibility.alpha();
     pixel.coverage.assign(instances.size(), 0.0);
     for (const VisibleSurface& surface : visibility.surfaces())
-      pixel.coverage[visibility.instance_of(surface)] += static_cast<double>(surface.weight);
+      pixel.coverage[visibility.triangle(surface.candidate).instance] +=
+          static_cast<double>(surface.weight);
     pixel.alone = pixel.coverage;
     if (visibility.has_several())
       for (std::uint32_t i = 0; i < instances.size(); ++i) pixel.alone[i] = visibility.alpha_of(i);

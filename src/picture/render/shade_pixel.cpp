@@ -28,7 +28,7 @@ std::array<float, 2> weights_of(const Eigen::Array4f& functions) {
 PixelShading::Point PixelShading::point_at(const Visibility& visibility,
                                            const VisibleSurface& visible,
                                            const PixelPlace& at) const {
-  const RayTriangle& triangle = triangles_.all()[visible.triangle];
+  const RayTriangle& triangle = visibility.triangle(visible.candidate);
   const PlacedInstance& instance = instances_[triangle.instance];
   const Eigen::Array4f functions = visibility.functions(visible.candidate)(at.x, at.y, at.t);
   const auto [u, v] = weights_of(functions);

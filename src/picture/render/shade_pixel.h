@@ -34,11 +34,10 @@ struct RenderedPixel {
 // read's share of the pixel.
 class PixelShading {
  public:
-  PixelShading(const RayTriangles& triangles,
-               const std::vector<PlacedInstance>& instances,
+  PixelShading(const std::vector<PlacedInstance>& instances,
                const PixelRays& rays,
                const shade::Light& light)
-      : triangles_(triangles), instances_(instances), rays_(rays), light_(light) {}
+      : instances_(instances), rays_(rays), light_(light) {}
 
   PixelLight light_of(const Visibility& visibility, int x, int y);
 
@@ -88,7 +87,6 @@ class PixelShading {
   // Sets what the sun does at each of the points.
   void find_sunlight();
 
-  const RayTriangles& triangles_;
   const std::vector<PlacedInstance>& instances_;
   const PixelRays& rays_;
   const shade::Light& light_;

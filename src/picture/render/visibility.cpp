@@ -233,7 +233,6 @@ void Visibility::add_candidate(std::uint32_t triangle) {
   if (!(span.from < span.to)) return;
   if (of.nearest < hidden_ && of.instance == hidden_instance_) return;
   Candidate& candidate = candidates_.emplace_back();
-  candidate.triangle = triangle;
   candidate.of = &of;
   const float part_t = span.from > 0 || span.to < 1 ? span.from + span.to - 1 : 0;
   candidate.functions = functions_about(of, ray_, span.u, span.half_u, part_t);
@@ -496,7 +495,6 @@ void Visibility::list_surfaces(double scale) {
     if (sum.samples == 0) continue;
     sum.surface = static_cast<std::uint32_t>(surfaces_.size());
     VisibleSurface& surface = surfaces_.emplace_back();
-    surface.triangle = candidates_[i].triangle;
     surface.candidate = static_cast<std::uint32_t>(i);
     surface.weight = static_cast<float>(scale * static_cast<double>(sum.weight));
     surface.light = static_cast<float>(scale * static_cast<double>(sum.light));

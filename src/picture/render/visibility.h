@@ -25,8 +25,7 @@ struct PixelPlace {
 
 // A surface that is visible in a pixel.
 struct VisibleSurface {
-  std::uint32_t triangle = 0;  // of RayTriangles::all()
-  // Index of its functions (Visibility::functions).
+  // Of Visibility::triangle() and functions().
   std::uint32_t candidate = 0;
   // What the surface contributes to alpha, and the share of the pixel's light that nearer surfaces
   // let through to it.
@@ -58,9 +57,7 @@ class Visibility {
   double alpha() const { return alpha_; }
   const std::vector<VisibleSurface>& surfaces() const { return surfaces_; }
   const std::vector<PixelPlace>& reads() const { return reads_; }
-  std::uint32_t instance_of(const VisibleSurface& surface) const {
-    return triangles_.all()[surface.triangle].instance;
-  }
+  const RayTriangle& triangle(std::size_t candidate) const { return *candidates_[candidate].of; }
   // True where triangles of more than one instance may touch the pixel.
   bool has_several() const { return has_several_; }
   const PixelRay& ray() const { return ray_; }
@@ -85,7 +82,6 @@ class Visibility {
   };
   // A triangle that may be visible in the pixel.
   struct Candidate {
-    std::uint32_t triangle = 0;
     const RayTriangle* of = nullptr;
     // At an instant the places across (x) and down (y) at which it can be; with an exposure both
     // are the times at which it can be over the pixel.

@@ -115,7 +115,7 @@ void compare(const std::string& name, double size_px, bool moves) {
       // The rays' own error is about a hundredth.
       if (std::abs(visibility->alpha() - met.alpha) > 1.0 / 32) ++wrong;
       for (const VisibleSurface& surface : visibility->surfaces()) {
-        const RayTriangle& of = triangles.all()[surface.triangle];
+        const RayTriangle& of = visibility->triangle(surface.candidate);
         if (!met.triangles.contains({static_cast<int>(of.part), of.in_part}))
           strange += static_cast<double>(surface.weight);
       }
