@@ -5,16 +5,12 @@
 #include <atomic>
 #include <cmath>
 #include <deque>
-#include <memory>
 #include <set>
-#include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/image/cuts.h"
@@ -136,23 +132,17 @@ struct Reader::State {
   }
   void tell(const std::string& text) const { airtruth::warn(warn, path.string() + ": " + text); }
 
-  static std::unique_ptr<State> opened(const std::filesystem::path& path,
-                                       const ReaderOptions& options,
-                                       Warn warn) {
-    auto state = std::make_unique<State>();
-    state->path = path;
-    state->options = options;
-    state->warn = std::move(warn);
-    state->open_input();
-    state->open_codec();
-    return state;
+  State(const std::filesystem::path& of, const ReaderOptions& how, Warn warn_to)
+      : path(of), options(how), warn(std::move(warn_to)) {
+    open_input();
+    open_codec();
   }
 
   // Opened, and decoded up to the first frame that is handed out.
   static std::unique_ptr<State> begun(const std::filesystem::path& path,
                                       const ReaderOptions& options,
                                       Warn warn) {
-    auto state = opened(path, options, warn);
+    auto state = std::make_unique<State>(path, options, warn);
     if (options.first_frame > 0 && !state->go_to_first_frame() && !state->is_in_doubt()) {
       const bool is_known_end = state->info.frame_count_estimate <= options.first_frame;
       if (!is_known_end)
@@ -160,7 +150,7 @@ struct Reader::State {
             fmt::format("its frames cannot be found without decoding; the {} before first_frame "
                         "are decoded",
                         options.first_frame));
-      state = opened(path, options, {});  // what it says was said
+      state = std::make_unique<State>(path, options, Warn());  // what it says was said
     }
     const bool holds_frame = state->look_ahead();
     state->warn = std::move(warn);
