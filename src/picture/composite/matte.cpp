@@ -10,7 +10,6 @@
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 #include "picture/composite/codec_blocks.h"
-#include "picture/composite/cover.h"
 #include "picture/composite/spread.h"
 
 namespace airtruth::composite {

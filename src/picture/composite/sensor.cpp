@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/composite/sensor.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "foundation/base/seed.h"
-#include "foundation/image/colour.h"
 #include "picture/composite/spread.h"
 
 namespace airtruth::composite {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/render/coverage.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>

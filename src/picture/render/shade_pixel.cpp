@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "picture/shade/texture.h"
 #include "picture/shade/trace.h"
 
 namespace airtruth::render {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/shade/outer_sides.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>

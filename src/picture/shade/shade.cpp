@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "picture/shade/texture.h"
-
 namespace airtruth::shade {
 namespace {
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <functional>
 #include <string_view>
-#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/video/metadata.h"
 
-#include <algorithm>
-
 #include "picture/video/libav.h"
 #include "picture/video/media_file.h"
 #include "picture/video/numbered_images.h"

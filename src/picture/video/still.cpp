@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <new>
-#include <string>
-#include <utility>
 
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
-#include "foundation/base/files.h"
 #include "foundation/base/names.h"
 #include "foundation/image/colour.h"
 #include "picture/video/libav.h"

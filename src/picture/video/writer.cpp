@@ -5,15 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <new>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
 #include "foundation/image/colour.h"
