@@ -331,7 +331,8 @@ TEST_F(StreamOfFlights, SoAreEncountersFromWhereTheyAreInView) {
     for (const annotation::Intruder& intruder : sample.frames[0].truth.intruders)
       seen += intruder.state == annotation::State::kVisible ? 1 : 0;
   }
-  EXPECT_GE(seen, 20);
+  // All of the model's, and two of five of the passages, which come from any side.
+  EXPECT_GE(seen, 18);
   for (const std::int64_t index : {0, 2})
     expect_as_rendered(stream, index, folder_->path() / "encounters");
 }

@@ -114,8 +114,8 @@ struct Samples {
 // The C2 spline through samples, flown as that at times. Between equal neighbouring positions it
 // stands still, and the spline ends there and begins anew (C1). An angle that the samples state
 // follows a spline through its unwrapped values, and three together also across the pole
-// (nearest_angles()); any other angle is that of `otherwise`, or follows from the path as above. The
-// samples must hold at least two times.
+// (nearest_angles()); any other angle is that of `otherwise`, or follows from the path as above.
+// The samples must hold at least two times.
 Path path_through_samples(const Samples& samples, const AttitudeOverride& otherwise = {});
 
 // Flight at constant speed, climb and rate of turn: a straight line or a helix. It passes
