@@ -51,8 +51,8 @@ std::vector<float> coded_of(std::vector<float> luma, int width, const Injected& 
   const image::ToneCurve& tone = what.sensor.tone;
   for (float& v : luma) v = tone.linear_from_coded_clamped(v);
   const int height = static_cast<int>(luma.size()) / width;
-  if (what.point_spread_px > 0)
-    composite::blur(luma, width, height, composite::gaussian(spread_of_finer(what)));
+  const auto kernel = composite::gaussian(spread_of_finer(what));
+  if (what.point_spread_px > 0) composite::blur(luma, width, height, kernel, kernel);
   luma = in_larger_pixels(luma, width, what.finer);
   for (float& v : luma) v = static_cast<float>(tone.coded_from_linear(double(v)));
   return luma;
@@ -67,8 +67,9 @@ image::Picture taken(const image::Picture& fine, const Injected& what, std::int6
     auto samples = in_larger_pixels(samples_of(fine.planes[p]), fine.planes[p].width, what.finer);
     // In chroma samples of two luma pixels. The spread of luma also applies to chroma.
     const double spread_px = std::hypot(what.sensor.chroma_spread_px, what.point_spread_px);
+    const auto kernel = composite::gaussian(spread_px / 2);
     if (what.sensor.chroma_spread_px > 0)
-      composite::blur(samples, plane.width, plane.height, composite::gaussian(spread_px / 2));
+      composite::blur(samples, plane.width, plane.height, kernel, kernel);
     put(samples, plane);
   }
   const image::ColourCode code(picture.colour);
