@@ -416,7 +416,7 @@ void AmbientEstimator::follow_exposure(const std::vector<Rgb>& blocks) {
   blocks_before_ = blocks;
   if (!smooth_) return;
   for (std::size_t c = 0; c < 3; ++c) {
-    if (std::abs(std::log(change[c])) < kJump) continue;
+    if (!(std::abs(std::log(change[c])) >= kJump)) continue;
     for (const auto light : kSmoothed) ((*smooth_).*light)[c] *= change[c];
   }
 }
