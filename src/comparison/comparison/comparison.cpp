@@ -278,8 +278,10 @@ class Comparing {
     scene::Intruder& intruder = scene.intruders[0];
     intruder.aircraft = fit.aircraft;
     // Axes and scales are those of the scene's own aircraft.
-    intruder.model_forward = intruder.model_up = std::nullopt;
-    intruder.model_scale = intruder.catalogue_scale = std::nullopt;
+    intruder.model_forward.reset();
+    intruder.model_up.reset();
+    intruder.model_scale.reset();
+    intruder.catalogue_scale.reset();
     load(scene);
   }
 
