@@ -156,22 +156,27 @@ YAML::Node only_camera(const YAML::Node& top, const std::string& file) {
   return camera;
 }
 
-// Where the line of three dashes is that begins a second document; npos: nowhere. yaml-cpp's own
-// LoadAll() takes what follows a whole document, such as a comma, for documents without end.
+// Where a second document begins; the text's size: nowhere. yaml-cpp's own LoadAll() takes what
+// follows a whole document, such as a comma, for documents without end.
 std::size_t second_document(std::string_view text) {
   bool is_begun = false;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = trimmed(text.substr(begin, end - begin));
-    if (text.substr(begin).starts_with("---")) {
+    const std::string_view row = text.substr(begin, end - begin), line = trimmed(row);
+    const auto is_mark = [&](const char* mark) {
+      return row.starts_with(mark) && trimmed(row.substr(3, 1)).empty();
+    };
+    if (is_mark("---")) {
       if (is_begun) return begin;
       is_begun = line.size() > 3;
+    } else if (is_mark("...")) {
+      if (is_begun) return std::min(end + 1, text.size());
     } else if (!line.empty() && line.front() != '#' && line.front() != '%') {
       is_begun = true;
     }
     begin = end + 1;
   }
-  return std::string_view::npos;
+  return text.size();
 }
 
 YAML::Node document_of(std::string_view text, int lines_before, const std::string& file) {
@@ -187,12 +192,11 @@ Values values_of_yaml(std::string_view text, const std::string& file) {
     throw Error("is larger than 1 MiB; expected an OpenCV calibration", {file});
   text = without_mark(text);
   Values values;
-  const std::size_t end = std::min(second_document(text), text.size());
+  const std::size_t end = second_document(text);
   const YAML::Node document = document_of(text.substr(0, end), 0, file);
   // A second document is a key that nothing reads.
-  if (const auto before = static_cast<int>(std::ranges::count(text.substr(0, end), '\n'));
-      document_of(text.substr(end), before, file).IsMap())
-    keep(values, "---", "", {file, before + 1});
+  const int line = line_of(text, static_cast<std::ptrdiff_t>(end));
+  if (document_of(text.substr(end), line - 1, file).IsMap()) keep(values, "---", "", {file, line});
   if (!document.IsMap()) return values;
   YAML::Node top = document;
   if (const YAML::Node camera = only_camera(top, file); camera.IsMap()) top.reset(camera);

@@ -241,6 +241,20 @@ TEST(OpenCv, AFileThatSaysTwoThingsIsRefused) {
     warnings.push_back(text);
   });
   EXPECT_THAT(warnings, testing::ElementsAre("a.yml:2: '---' is not read"));
+  warnings.clear();
+  parse_calibration(opencv("...\n" + other), "a.yml", kProfileSize, [&](const std::string& text) {
+    warnings.push_back(text);
+  });
+  EXPECT_THAT(warnings, testing::ElementsAre("a.yml:3: '---' is not read"));
+}
+
+TEST(OpenCv, AKeyOfDashesBeginsNoDocument) {
+  const std::string distortion = "distortion_coefficients: [-0.28, 0.09, 0.001, -0.0005, 0.02]\n";
+  const auto distortion_of = [](const std::string& text) {
+    return std::get<BrownConrady>(parse_calibration(text, "a.yml", kProfileSize).model())
+        .distortion;
+  };
+  EXPECT_EQ(distortion_of(opencv("---x: 1\n" + distortion)), distortion_of(opencv(distortion)));
 }
 
 // yaml-cpp reads what follows the brace as documents without end.
