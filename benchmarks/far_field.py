@@ -147,7 +147,7 @@ def strips(arguments, carry):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("video")
-    parser.add_argument("--lens", help="a calibration of Gyroflow or OpenCV; for rotations")
+    parser.add_argument("--lens", help="a calibration file; for rotations")
     parser.add_argument("--every", type=int, default=120, help="frames in a line of the table")
     parser.add_argument("--strips", help="draw this picture instead")
     parser.add_argument("--frames", type=int, nargs="*", default=[], help="first frames of the strips")

@@ -354,7 +354,7 @@ namespace {
 // The outline of a latex envelope in shares of its diameter: a sphere above, drawn out to the neck
 // below.
 struct Outline {
-  float above, radius;
+  float above, radius;  // above the sphere's middle
 };
 
 std::vector<Outline> outline() {

@@ -154,7 +154,8 @@ Unrolled unroll(const Sight& sight, const Quaternion& cam_from_level, const Swee
 
 // The least number of azimuths at which the line lies in the picture. Chosen by judgement.
 constexpr int kMinColumns = 30;
-// A step of luma beyond this many code values adds little.
+// A step of luma beyond this many code values adds little, so that weak steps all along a line
+// outweigh a strong step in one place.
 constexpr float kLargestStep = 6;
 
 // It reaches higher than down, because haze hides up to a dozen degrees of ground.

@@ -27,8 +27,10 @@ Calibration parse_gyroflow_profile(std::string_view text, const std::filesystem:
 Calibration parse_opencv_calibration(std::string_view text, const std::filesystem::path& name);
 
 // COLMAP's cameras.txt (colmap.github.io, "Output Format"): CAMERA_ID MODEL WIDTH HEIGHT PARAMS.
-// The models are those that follow from OpenCV's (colmap/src/colmap/sensor/models.h). The first
-// pixel's centre is at 0.5. Throws Error, with the line, for other models and for several cameras.
+// The models are SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV,
+// SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE and OPENCV_FISHEYE (colmap/src/colmap/sensor/models.h). The
+// first pixel's centre is at 0.5. Throws Error, with the line, for other models and for several
+// cameras.
 Calibration parse_colmap_cameras(std::string_view text, const std::filesystem::path& name);
 
 // Agisoft Metashape's camera calibration (user manual, appendix D "Camera models"): a <calibration>

@@ -41,7 +41,8 @@ struct Submitted {
 // tasks makes its share. verify.sh runs after all tasks have ended, writes the manifest and
 // verifies the set. A task that is requeued continues where it stopped. Throws Error where a job
 // script cannot hold an option or a path (dataset/catalogue/slurm_options.h), and where sbatch is
-// missing or refuses; no job is then left running.
+// missing, refuses or states no job. Where the second job fails the array is cancelled, and the
+// error says where that fails, too; a job whose number sbatch did not state may be left.
 Submitted submit(const catalogue::Catalogue& catalogue,
                  const fs::path& out,
                  const SlurmOptions& options);

@@ -31,7 +31,9 @@ struct ClipFacts {
   std::map<std::string, double> weather;
 };
 
-// The labelled clips of a folder: those of its sequences::SequenceFolders.
+// The labelled clips of a folder: of a data set that `dataset build` made, complete or not; of the
+// output of `dataset import`; or of one or more sequences that `render` made
+// (sequences::SequenceFolders).
 class LabelledSet {
  public:
   // Throws Error where the folder holds no sequence.

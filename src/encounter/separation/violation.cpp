@@ -80,15 +80,15 @@ namespace {
 constexpr double kFt = kMetresOfFoot;
 constexpr double kNmi = kMetresOfNauticalMile;
 
-// The source's own units are kept in the numbers; docs/formats/scene.md names the document of each.
+// The document's own units are kept in the numbers; docs/formats/scene.md says what each is for.
 constexpr std::array kVolumes = {
-    NamedVolume{"do365-phase1", {0.66 * kNmi, 450 * kFt, 35, 0}},
-    NamedVolume{"do365-preventive", {0.66 * kNmi, 700 * kFt, 35, 0}},
-    NamedVolume{"do365-terminal", {1500 * kFt, 450 * kFt, 0, 0}},
-    NamedVolume{"do365-non-cooperative", {2200 * kFt, 450 * kFt, 0, 0}},
-    NamedVolume{"do365-buffered", {1 * kNmi, 450 * kFt, 35, 20}},
-    NamedVolume{"f3442", {2000 * kFt, 250 * kFt, 0, 0}},
-    NamedVolume{"nmac", {500 * kFt, 100 * kFt, 0, 0}},
+    NamedVolume{"do365-phase1", {0.66 * kNmi, 450 * kFt, 35, 0}},         // RTCA DO-365B
+    NamedVolume{"do365-preventive", {0.66 * kNmi, 700 * kFt, 35, 0}},     // RTCA DO-365B
+    NamedVolume{"do365-terminal", {1500 * kFt, 450 * kFt, 0, 0}},         // RTCA DO-365B
+    NamedVolume{"do365-non-cooperative", {2200 * kFt, 450 * kFt, 0, 0}},  // RTCA DO-365B
+    NamedVolume{"do365-buffered", {1 * kNmi, 450 * kFt, 35, 20}},         // NASA DAIDALUS v2
+    NamedVolume{"f3442", {2000 * kFt, 250 * kFt, 0, 0}},                  // ASTM F3442/F3442M-23
+    NamedVolume{"nmac", {500 * kFt, 100 * kFt, 0, 0}},                    // RTCA DO-365B
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace airtruth::scores {
 
 // One object in one frame.
 struct TruthObject {
-  // The same number for the same object throughout a sequence, from 1; TruthSequence::encounters
+  // The same number for the same object throughout a sequence, from 0; TruthSequence::encounters
   // has its encounter.
   std::int64_t id = 0;
   // IntruderTruth::object_class in <airtruth/truth.h>: an "aircraft" is to be found, all others are

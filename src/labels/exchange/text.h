@@ -78,8 +78,9 @@ inline constexpr const char* kOutside = "boxes that are empty or outside their i
 std::optional<Box> clipped(const Box& box, int width, int height);
 
 // The bounds of the ones of a mask in VOT's words: x, y, width, height of its window, and run
-// lengths along the rows of that, of which the first counts zeros. The runs fit the window. Empty
-// where the mask has no ones.
+// lengths along the rows of that, of which the first counts zeros. The runs fit the window.
+// `origin_px`: the coordinate that the numbers give to the first pixel, 0 or 1; the bounds count
+// from 0. Empty where the mask has no ones.
 std::optional<Box> bounds_of_mask(const std::vector<double>& numbers, int origin_px = 0);
 
 // Counts omitted items by reason, and warns once for each reason when it is destroyed.

@@ -99,7 +99,8 @@ std::optional<Layout> layout_of(AVPixelFormat format);
 // The nearest format that layout_of() supports, for formats that stills use: palettes, 1 bit,
 // 16-bit grey and RGB (grey with alpha too). AV_PIX_FMT_NONE for all others.
 AVPixelFormat plain_kin(AVPixelFormat format);
-// Converts a frame to that format (libswscale, no dithering). Alpha is dropped.
+// Converts a frame to its plain kin, or packs its planes for an encoder (libswscale, no dithering).
+// Alpha is dropped.
 FramePtr in_format(const AVFrame& frame, AVPixelFormat format);
 
 // By the picture's height where `space` is untagged; empty for one that a Picture cannot hold.

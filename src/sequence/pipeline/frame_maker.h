@@ -46,7 +46,8 @@ class FrameMaker {
   // The same with a motion that is known: that of a finished sequence's truth.
   void locate(Work& work, const Shake& shake);
   // 3. draw: the intruders' light, coverage and depth on the frame's grid. Frames come in any
-  // order.
+  // order. With chroma-key draw() and compose() belong to the thread that opened the scene, as
+  // OpenGL's context does.
   void draw(Work& work) const;
   // 4. compose: what was drawn is put into the picture. Frames come in order where a codec's mark
   // follows from the frame before (composes_in_order()), else in any order.
