@@ -121,6 +121,9 @@ class Compare(program.Case):
         made("compare", "--real", "narrow.mkv", "--boxes", "narrow.csv", "--scene", "scene.toml", "-o", "narrow", "--no-match")
         real, inserted = measures("narrow")["motion against the background"]
         self.assert_near(inserted, real, 0.15, "motion against the background")
+        # The sun is fitted where the aircraft is inserted.
+        made("compare", "--real", "narrow.mkv", "--boxes", "narrow.csv", "--scene", "scene.toml", "-o", "narrow_sun", "--types", "c172/news")
+        self.assertIn("sun", json.loads(read("narrow_sun", "comparison.json"))["pose"])
 
     def test_type_and_attitude_are_found(self):
         # The scale is that of the scene's own aircraft, which is not inserted.

@@ -85,8 +85,8 @@ void add_compare(CLI::App& app, Context& context) {
       ->required();
   command->add_option("--scene", arguments->scene)
       ->description(
-          "Scene that says which aircraft, light, lens and camera model; its video and "
-          "path are not used, and its aircraft's type and attitude and its sun with "
+          "Scene that says which aircraft, light, lens and camera model, and the rate of pictures; "
+          "its video and path are not used, and its aircraft's type and attitude and its sun with "
           "--no-match alone")
       ->required();
   command->add_option("-o,--out", arguments->out, "Folder to make")->required();

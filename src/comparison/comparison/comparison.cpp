@@ -53,8 +53,8 @@ constexpr std::size_t kMaxPaints = 6;      // liveries of a type that are tried
 constexpr double kPoseSpacingDeg = 40;     // of the suns that a pose or a livery is tried under
 constexpr double kSunSpacingDeg = 15;      // of those that the best of them is
 
-// Level flight as fast as aircraft are loaded by default: with gear and flaps up, as those have
-// them whose silhouettes a pose is fitted to.
+// Level flight as fast as aircraft are loaded by default: gear and flaps that a model moves by its
+// speed are up, as those of the silhouettes are to which a pose is fitted.
 Vector3 cruise_mps(double yaw_deg) {
   return world_from_body({yaw_deg, 0, 0}) *
          Vector3(model::LoadOptions().airspeed_kt * kMpsOfKnot, 0, 0);
@@ -230,14 +230,13 @@ class Comparing {
   }
 
  private:
-  void load(const scene::Scene& given) {
+  void load(scene::Scene& given) {
     const video::StreamInfo info =
         video::Reader(real_, {.picture_rate_hz = given.background.frame_rate_hz, .threads = 1})
             .info();
     const lens::ImageSize size{info.width, info.height};
-    scene::Lens of_clip = given.lens;
-    setup::take_pixel_shape(of_clip, size, info.sample_aspect.value());
-    lens_ = setup::lens_of(of_clip, size);
+    setup::take_pixel_shape(given.lens, size, info.sample_aspect.value());
+    lens_ = setup::lens_of(given.lens, size);
     rate_hz_ = info.frame_rate.value();
     const scene::Intruder& intruder = given.intruders[0];
     const trajectory::Path level = trajectory::uniform(Vector3::Zero(), cruise_mps(0), {});
