@@ -58,11 +58,10 @@ bool is_of_a_full_disk(const std::exception& error) {
   });
 }
 
-// Of a sequence of [[encounter_model]] the type that it most likely has.
+// Of a sequence of [[encounter_model]] the aircraft that it most likely has.
 std::string first_aircraft(const catalogue::Item& item) {
   if (item.encounter_rule != nullptr)
-    return wanted_type(*item.encounter_rule, static_cast<std::uint64_t>(item.index_in_rule), 0)
-        .name;
+    return likely_aircraft(*item.encounter_rule, item.index_in_rule);
   return item.scene.intruders.empty() ? "" : item.scene.intruders.front().aircraft;
 }
 

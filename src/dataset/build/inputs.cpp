@@ -55,8 +55,7 @@ catalogue::BackgroundFiles fly(const catalogue::Background& background,
   }
   fs::create_directories(folder.backgrounds());
   if (!lens.empty()) write_file(kept_lens, lens);
-  const synthetic::Flight flight = setup::at_place(
-      background.where, [&] { return synthetic::Flight(flight_over(background, wanted)); });
+  const synthetic::Flight flight(flight_over(background, wanted));
   write_file(stem.string() + ".csv", synthetic::csv_from_flight(flight));
   video::write_still(*files.mask, insertion::picture_of(flight.own_aircraft()));
   const auto progress = [&](std::int64_t done, std::int64_t total) {
@@ -161,6 +160,9 @@ void check_background(const catalogue::Catalogue& catalogue, std::size_t place) 
                 background.where);
   if (video == nullptr && background.mask)
     throw Error("mask has no effect with flight, which has a mask of its own", background.where);
+  if (const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source))
+    setup::at_place(background.where,
+                    [&] { synthetic::check_options(flight_over(background, *flight)); });
   scene::Scene scene = catalogue::scene_over(catalogue, place);
   scene.background.mask = background.mask;
   // A log on the video's clock is asked for its part from there on.

@@ -342,6 +342,16 @@ bool has_second(const EncounterRule& rule, std::int64_t index) {
   return std::fmod(turned, 1.0) < rule.two_intruders;
 }
 
+// The type of an intruder, each as often as the others within one in the whole rule, negative
+// sequences included.
+const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, std::uint64_t k) {
+  const pairing::Strata strata(
+      Seed(rule.seed).stream("types of intruder", k)(), static_cast<std::uint64_t>(rule.count), 1);
+  return rule.types[static_cast<std::size_t>(
+      strata.spaced(index % static_cast<std::uint64_t>(rule.count), 0) *
+      static_cast<double>(rule.types.size()))];
+}
+
 // Of a long clip not every frame is looked at.
 std::int64_t look_step(const Views& views) { return 1 + views.frames / kMostLooks; }
 
@@ -352,14 +362,6 @@ double seen_s(const scene::Intruder& intruder, const scene::Camera& camera, cons
 }
 
 }  // namespace
-
-const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, std::uint64_t k) {
-  const pairing::Strata strata(
-      Seed(rule.seed).stream("types of intruder", k)(), static_cast<std::uint64_t>(rule.count), 1);
-  return rule.types[static_cast<std::size_t>(
-      strata.spaced(index % static_cast<std::uint64_t>(rule.count), 0) *
-      static_cast<double>(rule.types.size()))];
-}
 
 std::vector<std::int64_t> frames_in_view(const scene::Intruder& intruder,
                                          const scene::Camera& camera,
@@ -432,25 +434,30 @@ DrawnIntruder seen_intruder(const EncounterRule& rule,
 
 }  // namespace
 
+std::string likely_aircraft(const EncounterRule& rule, std::int64_t index) {
+  const auto number = static_cast<std::uint64_t>(index);
+  Random random = Seed(rule.seed).stream("aircraft", number);
+  return one_of(random, wanted_type(rule, number, 0).liveries);
+}
+
 Draws add_encounter(scene::Scene& scene,
                     const EncounterRule& rule,
                     std::int64_t index,
-                    const Views* views) {
+                    const Views& views) {
   Draws draws;
   if (is_chosen("negatives", rule.negatives, rule.seed, index)) return draws;
   const track::Track own = own_track(scene, rule);
   const auto number = static_cast<std::uint64_t>(index);
-  const double clip_s =
-      views == nullptr ? 0 : static_cast<double>(views->frames) / views->frame_rate_hz;
-  if (views != nullptr && rule.in_view && rule.seen_s > clip_s)
+  const double clip_s = static_cast<double>(views.frames) / views.frame_rate_hz;
+  if (rule.in_view && rule.seen_s > clip_s)
     throw Error(fmt::format("seen_s is {:.3g}, and the clip lasts {:.3g} s; expected at most that",
                             rule.seen_s,
                             clip_s),
                 rule.where);
   double weight = 1;
   for (std::uint64_t k = 0; k < (has_second(rule, index) ? 2u : 1u); ++k) {
-    DrawnIntruder one = views != nullptr && rule.in_view
-                            ? seen_intruder(rule, scene.camera, own, number, k, *views, draws)
+    DrawnIntruder one = rule.in_view
+                            ? seen_intruder(rule, scene.camera, own, number, k, views, draws)
                             : drawn_intruder(rule, own, number, k, 0);
     weight *= one.weight;
     scene.intruders.push_back(std::move(one.intruder));

@@ -79,15 +79,15 @@ fs::path kept_model(const fs::path& folder, const fs::path& model_file);
 std::vector<EncounterRule> encounter_rules(const scene::TableReader& root,
                                            const Catalogue& catalogue);
 
-// The type that intruder k of sequence `index` is of where its class flies the track: each as often
-// as the others within one in the whole rule, negative sequences included.
-const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, std::uint64_t k);
+// The aircraft of the first intruder of sequence `index` where its type flies the track that is
+// drawn first.
+std::string likely_aircraft(const EncounterRule& rule, std::int64_t index);
 
 // Gives the scene, whose camera is the own aircraft, the intruders of sequence `index` and, where
 // they come from a model, its weight: the product of those of the intruders. A negative sequence
 // gets none. Types are taken evenly in turn where their class flies the track, else one that does,
-// at its usual speed where there is one. With `views` and a rule of in_view, an intruder is drawn
-// again where the camera does not see it, at most kMostDraws times. Where the own aircraft is
+// at its usual speed where there is one. By a rule of in_view an intruder is drawn again where the
+// camera does not see it, at most kMostDraws times. Where the own aircraft is
 // higher than kLowestFlightM, so is every intruder.
 //
 // A track that is too low, or of a model one that no aircraft of the rule flies, is drawn again; a
@@ -96,7 +96,7 @@ const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, 
 Draws add_encounter(scene::Scene& scene,
                     const EncounterRule& rule,
                     std::int64_t index,
-                    const Views* views = nullptr);
+                    const Views& views);
 
 constexpr std::uint64_t kMostDraws = 200;  // chosen
 

@@ -54,7 +54,9 @@ class EncounterModel : public testing::Test {
 // A sequence with the intruders that are drawn first, in view or not.
 Item first_drawn(const Catalogue& catalogue, std::int64_t index) {
   Item item = Expansion(catalogue).at(index);
-  add_encounter(item.scene, *item.encounter_rule, index);
+  EncounterRule rule = *item.encounter_rule;
+  rule.in_view = false;
+  add_encounter(item.scene, rule, index, {setup::lens_of(item.scene.lens, {160, 120}), 240, 30});
   return item;
 }
 

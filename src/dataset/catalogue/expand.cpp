@@ -285,9 +285,8 @@ Draws draw_in_view(Item& item, const Catalogue& catalogue, const BackgroundFiles
   const DrawnClip clip =
       drawn_clip(item, catalogue.backgrounds[item.background].first_frame, files);
   const Views views{setup::lens_of(item.scene.lens, clip.size), clip.frames, clip.frame_rate_hz};
-  std::erase_if(item.scene.intruders, scene::is_aircraft);
   std::vector<scene::Intruder> distractors = std::exchange(item.scene.intruders, {});
-  const Draws draws = add_encounter(item.scene, *item.encounter_rule, item.index_in_rule, &views);
+  const Draws draws = add_encounter(item.scene, *item.encounter_rule, item.index_in_rule, views);
   std::move(distractors.begin(), distractors.end(), std::back_inserter(item.scene.intruders));
   return draws;
 }
