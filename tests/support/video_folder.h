@@ -10,6 +10,7 @@
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
 #include "support/error_of.h"
+#include "support/ffmpeg.h"
 #include "support/temporary_folder.h"
 
 // What the tests of video files have in common.
@@ -18,11 +19,7 @@ namespace airtruth::video {
 // A folder in which the ffmpeg program makes and reads files.
 class Video : public testing::Test {
  protected:
-  void ffmpeg(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.string() + "' && ffmpeg -nostdin -v error -y " + arguments;
-    ASSERT_EQ(std::system(command.c_str()), 0) << command;
-  }
+  void ffmpeg(const std::string& arguments) const { test_support::ffmpeg(folder_, arguments); }
   std::string raw(const fs::path& video, const std::string& pixel_format) const {
     ffmpeg("-i '" + video.string() + "' -f rawvideo -fps_mode passthrough -pix_fmt " +
            pixel_format + " raw.bin");

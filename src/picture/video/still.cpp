@@ -186,9 +186,9 @@ void write_still(const fs::path& path, const image::Picture& picture, Flush flus
 }
 
 image::Mask read_mask(const fs::path& path, int width, int height) {
-  const image::Picture picture = first_picture(path);
-  if (picture.width != width || picture.height != height)
-    throw Error("is " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+  const image::Rgb8 rgb = read_still(path);
+  if (rgb.width != width || rgb.height != height)
+    throw Error("is " + std::to_string(rgb.width) + "x" + std::to_string(rgb.height) +
                     "; expected the video's " + std::to_string(width) + "x" +
                     std::to_string(height),
                 {path.string()});
@@ -196,7 +196,6 @@ image::Mask read_mask(const fs::path& path, int width, int height) {
   mask.width = width;
   mask.height = height;
   mask.free.resize(pixels_in(width, height));
-  const image::Rgb8 rgb = image::rgb8_from_picture(picture);
   for (std::size_t i = 0; i < mask.free.size(); ++i) {
     const std::uint8_t* code = &rgb.samples[3 * i];
     mask.free[i] = (code[0] + 2 * code[1] + code[2]) / 4 >= kLight ? 255 : 0;

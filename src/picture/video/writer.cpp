@@ -50,7 +50,7 @@ Picture with_full_range(const Picture& picture, const Colour& to) {
 }
 
 // The picture's samples in a pixel format, whose planes are the picture's own or are packed.
-FramePtr frame_of(const Picture& picture, AVPixelFormat format) {
+FramePtr planes_as(const Picture& picture, AVPixelFormat format) {
   const AVPixelFormat planar = format == AV_PIX_FMT_BGR0   ? AV_PIX_FMT_GBRP
                                : format == AV_PIX_FMT_NV12 ? AV_PIX_FMT_YUV420P
                                                            : format;
@@ -318,11 +318,11 @@ FramePtr copied_frame(const AVCodecContext& encoder,
   const bool keeps_matrix = colour.chroma == Chroma::kNone || colour.matrix == stored.matrix;
   FramePtr frame;
   if (keeps_matrix && format == Format::kAvi && colour.range == Range::kLimited)
-    frame = frame_of(with_full_range(picture, stored), pixels);
+    frame = planes_as(with_full_range(picture, stored), pixels);
   else if (keeps_matrix && stored.chroma == colour.chroma)
-    frame = frame_of(picture, pixels);
+    frame = planes_as(picture, pixels);
   else  // through packed sRGB, as the format cannot store the picture's own colour
-    frame = frame_of(image::picture_from_rgb8(image::rgb8_from_picture(picture), stored), pixels);
+    frame = planes_as(image::picture_from_rgb8(image::rgb8_from_picture(picture), stored), pixels);
   if (is_on_device) frame = on_device(encoder, *frame);
   frame->color_range = encoder.color_range;
   frame->colorspace = encoder.colorspace;

@@ -70,7 +70,10 @@ std::vector<Intruder> flock_of(const Intruder& leader,
     member.offset_ned_m = place;
     flock.push_back(std::move(member));
   }
-  for (Intruder& member : flock) member.offset_ned_m += leader.offset_ned_m;
+  for (Intruder& member : flock)
+    member.offset_ned_m = (member.offset_ned_m + leader.offset_ned_m)
+                              .cwiseMax(kPosition.low)
+                              .cwiseMin(kPosition.high);
   return flock;
 }
 

@@ -333,6 +333,8 @@ std::vector<Disc> clutter_at(double time_s,
 
 }  // namespace
 
+void check_options(const FlightOptions& options) { lens_of(validated(options)); }
+
 struct Flight::Impl {
   explicit Impl(const FlightOptions& o)
       : options(validated(o)),

@@ -58,6 +58,9 @@ struct FlightOptions {
   bool translate = true;
 };
 
+// Throws Error for what Flight refuses.
+void check_options(const FlightOptions& options);
+
 // Renders the frames of a flight in any order and on any thread: frame k depends only on the
 // options and on k.
 class Flight {

@@ -186,8 +186,9 @@ class Curve : public CubicSpline {
 };
 
 // The angles of all samples, without turns by 360 degrees from one to the next in yaw and roll. An
-// attitude whose angles are `all_sampled` goes across the pole.
-std::vector<Vector3> unwrapped_angles(const Samples& samples, bool all_sampled) {
+// attitude whose angles are all sampled goes across the pole.
+std::vector<Vector3> unwrapped_angles(const Samples& samples) {
+  const bool all_sampled = samples.has_angle == std::array{true, true, true};
   std::vector<Vector3> angles = samples.angles_deg;
   angles.resize(samples.times_s.size(), Vector3::Zero());
   for (std::size_t i = 1; i < angles.size(); ++i) {
@@ -391,14 +392,14 @@ Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude) {
   });
 }
 
-// Position and its derivatives follow the samples. Angles follow the samples where they state them
-// and the path elsewhere.
+// Position and its derivatives follow the samples. Angles follow the samples where they state them,
+// else `otherwise`, else the path.
 Path path_through_samples(const Samples& samples, const AttitudeOverride& otherwise) {
   const auto along = std::make_shared<const Curve>(
       samples.times_s, samples.positions_ned_m, otherwise, kCourseMps);
   const std::array<bool, 3> sampled = samples.has_angle;
-  const auto angles = std::make_shared<const CubicSpline>(
-      samples.times_s, unwrapped_angles(samples, sampled == std::array{true, true, true}));
+  const auto angles =
+      std::make_shared<const CubicSpline>(samples.times_s, unwrapped_angles(samples));
   return Path(angles->begin(), angles->end(), [along, angles, sampled](double t) {
     State state = along->state_at(t);
     YawPitchRoll turned = yaw_pitch_roll(state.world_from_body);

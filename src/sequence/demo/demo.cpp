@@ -25,7 +25,7 @@ video::StreamInfo stream_of(const synthetic::FlightOptions& options, const image
   // The rate as it is stated, but 29.97 and its like, to three decimals, are n 1000/1001.
   const double hz = options.frame_rate_hz;
   const auto off = [hz](int den) { return std::abs(hz - std::round(hz * den) / den); };
-  const bool is_ntsc = std::abs(1.001 * hz - std::round(1.001 * hz)) < 1e-3;
+  const bool is_ntsc = std::lround(hz * 1001) % 1000 == 0;
   const int den = off(1) < 1e-9 ? 1 : !is_ntsc && off(1000) < off(1001) ? 1000 : 1001;
   info.frame_rate = {static_cast<int>(std::lround(hz * den)), den};
   info.time_base = {info.frame_rate.den, info.frame_rate.num};

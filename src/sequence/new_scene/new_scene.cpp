@@ -321,8 +321,8 @@ std::vector<motion::FrameMotion> motion_in(const fs::path& video,
 Part part_of(const fs::path& video,
              const video::StreamInfo& info,
              const lens::Lens& lens,
-             std::vector<motion::FrameMotion> motion) {
-  Part part{.frames = info.frame_count_estimate, .motion = std::move(motion)};
+             const NewSceneOptions& options) {
+  Part part{.frames = info.frame_count_estimate, .motion = motion_in(video, lens, options)};
   const double rate_hz = info.frame_rate.value();
   const auto wanted = static_cast<std::size_t>(std::max(1.0, kEncounterS * rate_hz));
   const double turn_rad = kSteadyShare * radians(lens.horizontal_fov_deg());
@@ -417,11 +417,14 @@ std::string background_words(const std::string& video,
 }
 
 video::StreamInfo info_of(const fs::path& video, const NewSceneOptions& options) {
-  const video::StreamInfo info =
-      video::Reader(
-          video, {.frame_count = 1, .picture_rate_hz = options.picture_rate_hz}, options.warn)
-          .info();
+  video::Reader reader(video, {.picture_rate_hz = options.picture_rate_hz}, options.warn);
+  video::StreamInfo info = reader.info();
   video::expect_rate(video, info, options.picture_rate_hz);
+  // Of a container that states no number the time stamps are counted: its length may be that of the
+  // sound.
+  if (!info.is_frame_count_stated && reader.next())
+    if (const auto times_s = reader.times_s(video::kAllFrames); !times_s.empty())
+      info.frame_count_estimate = std::ssize(times_s);
   return info;
 }
 
@@ -526,12 +529,9 @@ std::string first_encounter(const lens::Lens& lens,
 
 std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
   const std::string background = as_written(video, options);
-  video::StreamInfo info = info_of(video, options);
+  const video::StreamInfo info = info_of(video, options);
   const LensWords lens = lens_for(video, info, options);
-  std::vector<motion::FrameMotion> motion = motion_in(video, lens.lens, options);
-  // All frames of a shorter clip are counted by now; a container may state its sound's length.
-  if (std::ssize(motion) < kMaxMotionFrames) info.frame_count_estimate = std::ssize(motion);
-  const Part part = part_of(video, info, lens.lens, std::move(motion));
+  const Part part = part_of(video, info, lens.lens, options);
   const CameraWords camera = camera_for(video, part, options);
   const double rate_hz = info.frame_rate.value();
   const auto seconds_of = [&](std::int64_t frames) {

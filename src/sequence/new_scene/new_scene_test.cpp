@@ -2,7 +2,6 @@
 #include "sequence/new_scene/new_scene.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <regex>
@@ -18,6 +17,8 @@
 #include "sequence/demo/demo.h"
 #include "sequence/preview/preview.h"
 #include "sequence/setup/from_scene.h"
+#include "support/ffmpeg.h"
+#include "support/flight_file.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::new_scene {
@@ -179,10 +180,8 @@ TEST(NewScene, ANumberOfFramesThatIsNotStatedIsAbout) {
     EXPECT_THAT(scene_text(folder / name, {}), testing::StartsWith(words));
   }
   // With 3 s of sound the clip still ends with its last frame, at 3/30 s.
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && ffmpeg -nostdin -v error -i a.mp4 -f lavfi -i sine=d=3 -c:v "
-                              "copy -c:a flac sound.mkv";
-  ASSERT_EQ(std::system(command.c_str()), 0);
+  test_support::ffmpeg(folder.path(),
+                       "-i a.mp4 -f lavfi -i sine=d=3 -c:v copy -c:a flac sound.mkv");
   const std::string text = scene_text(folder / "sound.mkv", {});
   EXPECT_THAT(text, testing::StartsWith("# sound.mkv: about 4 frames of "));
   EXPECT_THAT(text, testing::HasSubstr("the clip lasts 0.1 s"));
@@ -191,15 +190,8 @@ TEST(NewScene, ANumberOfFramesThatIsNotStatedIsAbout) {
 // As a render of a scene without an attitude has it.
 TEST(NewScene, AHorizonThatStandsUpsideDownIsNone) {
   const test_support::TemporaryFolder folder;
-  synthetic::FlightOptions options;
-  options.frame_count = 3;
-  options.width = 320;
-  options.height = 240;
-  options.own_aircraft = false;
-  demo::write_flight(synthetic::Flight(options), folder / "a.mp4", {});
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && ffmpeg -nostdin -v error -i a.mp4 -vf hflip,vflip turned.mp4";
-  ASSERT_EQ(std::system(command.c_str()), 0);
+  test_support::write_flight(folder / "a.mp4", 320, 240, 3);
+  test_support::ffmpeg(folder.path(), "-i a.mp4 -vf hflip,vflip turned.mp4");
   EXPECT_THAT(scene_text(folder / "a.mp4", {}), testing::HasSubstr("are those of the horizon"));
   EXPECT_THAT(scene_text(folder / "turned.mp4", {}),
               testing::HasSubstr("[0, 0, 0]  # no horizon was found in the first frame"));

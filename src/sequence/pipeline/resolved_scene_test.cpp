@@ -2,7 +2,6 @@
 #include "sequence/pipeline/resolved_scene.h"
 
 #include <array>
-#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/motion_source.h"
 #include "sequence/setup/world.h"
+#include "support/ffmpeg.h"
 #include "support/flight_file.h"
 #include "support/temporary_folder.h"
 
@@ -219,10 +219,7 @@ TEST_F(Resolve, AFileThatIsNotThereIsAnErrorAtTheTableThatNamesIt) {
 // 120 / tan(30 deg) = 207.8 px in heights and of 155.9 px in widths, 181.9 px in the mean.
 TEST_F(Resolve, PixelsThatAreNotSquareHaveOneLens) {
   test_support::write_flight(root_ / "flight.mp4", 320, 240, 3);
-  const std::string command = "cd '" + root_.string() +
-                              "' && ffmpeg -nostdin -v error -y -i flight.mp4 -vf "
-                              "scale=240:240,setsar=4/3 clip.mkv";
-  ASSERT_EQ(std::system(command.c_str()), 0);
+  test_support::ffmpeg(root_, "-i flight.mp4 -vf scale=240:240,setsar=4/3 clip.mkv");
   info_.width = info_.height = 240;
   info_.sample_aspect = {4, 3};
   const scene::Lens stated_lens = scene_.lens;

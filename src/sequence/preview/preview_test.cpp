@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/preview/preview.h"
 
-#include <cstdlib>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +13,8 @@
 #include "sequence/preview/rows.h"
 #include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
+#include "support/ffmpeg.h"
+#include "support/flight_file.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::preview {
@@ -186,17 +186,13 @@ TEST(Preview, ThePictureShowsTheIntruderWhereTheRowsSay) {
 // 30 and 60, which that rate has at 1 and 2 s, are none of the clip.
 TEST(Preview, FramesOfAVariableRateHaveTheirNumbers) {
   const test_support::TemporaryFolder folder;
-  synthetic::FlightOptions flight;
-  flight.frame_count = 8;
-  flight.width = 320;
-  flight.height = 240;
-  demo::write_flight(synthetic::Flight(flight), folder / "flight.mp4", {});
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && ffmpeg -nostdin -v error -i flight.mp4 -vf "
-                              "\"setpts='if(lt(N,6),N/30,N-5+1/6)/TB'\" -fps_mode vfr -c:v ";
-  ASSERT_EQ(std::system((command + "libx264 vfr.mkv").c_str()), 0);
-  ASSERT_EQ(std::system((command + "libx264 vfr.mp4").c_str()), 0);
-  for (int k = 0; k < flight.frame_count; ++k)
+  test_support::write_flight(folder / "flight.mp4", 320, 240, 8);
+  for (const std::string name : {"vfr.mkv", "vfr.mp4"})
+    test_support::ffmpeg(folder.path(),
+                         "-i flight.mp4 -vf \"setpts='if(lt(N,6),N/30,N-5+1/6)/TB'\" -fps_mode vfr "
+                         "-c:v libx264 " +
+                             name);
+  for (int k = 0; k < 8; ++k)
     write_file(folder / ("mask" + std::to_string(k) + ".pgm"),
                "P5\n320 240\n255\n" + std::string(std::size_t{320} * 240, '\0'));
   for (const char* name : {"vfr.mkv", "vfr.mp4"}) {
@@ -210,15 +206,9 @@ TEST(Preview, FramesOfAVariableRateHaveTheirNumbers) {
 // Eight frames at 30 Hz with 3 s of sound, in a container that states the length of both alone.
 TEST(Preview, AClipEndsWithItsLastFrame) {
   const test_support::TemporaryFolder folder;
-  synthetic::FlightOptions flight;
-  flight.frame_count = 8;
-  flight.width = 320;
-  flight.height = 240;
-  demo::write_flight(synthetic::Flight(flight), folder / "flight.mp4", {});
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && ffmpeg -nostdin -v error -i flight.mp4 -f lavfi -i sine=d=3 "
-                              "-c:v copy -c:a flac sound.mkv";
-  ASSERT_EQ(std::system(command.c_str()), 0);
+  test_support::write_flight(folder / "flight.mp4", 320, 240, 8);
+  test_support::ffmpeg(folder.path(),
+                       "-i flight.mp4 -f lavfi -i sine=d=3 -c:v copy -c:a flac sound.mkv");
   scene::Scene scene = head_on(folder / "sound.mkv");
   EXPECT_EQ(preview_of(scene, {}).rows.size(), 1u);
   // More than are there, and fewer than the sound has.

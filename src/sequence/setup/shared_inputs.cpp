@@ -165,16 +165,11 @@ std::shared_ptr<const image::Mask> SharedInputs::mask_of(const std::filesystem::
 }
 
 std::string SharedInputs::sha256_of_file(const std::filesystem::path& file) {
+  const std::lock_guard lock(hashing_);
   const FileStamp stamp = file_stamp(file);
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = hashes_.find(file.string());
-    if (found != hashes_.end() && found->second.stamp == stamp) return found->second.sha256;
-  }
-  const std::string sha256 = airtruth::sha256_of_file(file);
-  const std::lock_guard lock(mutex_);
-  hashes_[file.string()] = {stamp, sha256};
-  return sha256;
+  const auto found = hashes_.find(file.string());
+  if (found != hashes_.end() && found->second.stamp == stamp) return found->second.sha256;
+  return (hashes_[file.string()] = {stamp, airtruth::sha256_of_file(file)}).sha256;
 }
 
 std::size_t SharedInputs::kept() const {

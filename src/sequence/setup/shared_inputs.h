@@ -52,7 +52,8 @@ class SharedInputs {
   std::shared_ptr<const image::Mask> mask_of(const std::filesystem::path& file,
                                              const lens::ImageSize& size);
 
-  // As airtruth::sha256_of_file; a file is read again only where its stamp has changed.
+  // As airtruth::sha256_of_file; a file is read again only where its stamp has changed. One file is
+  // read at a time, so that threads that ask for the same one read it once.
   std::string sha256_of_file(const std::filesystem::path& file);
 
   // The number of aircraft that are kept now.
@@ -96,7 +97,8 @@ class SharedInputs {
   // By aircraft, airspeed in knots and height in feet.
   std::map<std::tuple<std::string, double, double>, std::string> configurations_;
   std::uint64_t uses_ = 0;
-  std::map<std::string, Hashed> hashes_;
+  std::mutex hashing_;
+  std::map<std::string, Hashed> hashes_;  // guarded by hashing_
   std::map<std::string, ReadMask> masks_;
 };
 

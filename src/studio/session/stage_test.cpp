@@ -19,6 +19,7 @@
 #include "sequence/setup/shared_inputs.h"
 #include "studio/session/near_miss.h"
 #include "studio/session/plan.h"
+#include "support/ffmpeg.h"
 #include "support/flight_file.h"
 #include "support/shared_folder.h"
 #include "support/temporary_folder.h"
@@ -247,11 +248,9 @@ TEST_F(OverAFlight, ThePlanPassesTheHandles) {
 
 // 20 frames at 30 Hz, then 10 at 15 Hz: frame 28 is shown at (20 + 2 * 8) / 30 s.
 TEST_F(OverAFlight, FramesOfAVariableRateHaveTheirTimes) {
-  const std::string command =
-      "cd '" + folder_->path().string() +
-      "' && ffmpeg -nostdin -v error -y -i flight.mp4 -vf \"select='lt(n,20)+not(mod(n,2))'\" "
-      "-fps_mode vfr -c:v libx264 vfr.mp4";
-  ASSERT_EQ(std::system(command.c_str()), 0);
+  test_support::ffmpeg(folder_->path(),
+                       "-i flight.mp4 -vf \"select='lt(n,20)+not(mod(n,2))'\" -fps_mode vfr "
+                       "-c:v libx264 vfr.mp4");
   scene::Scene scene = scene_of(kSeen);
   scene.background.video = *folder_ / "vfr.mp4";
   Stage stage(options());
@@ -273,11 +272,9 @@ TEST_F(OverAFlight, FramesOfAVariableRateHaveTheirTimes) {
 // The same frames in a container that states 30 Hz and no number of frames: 39 of them would fill
 // its 1.3 s.
 TEST_F(OverAFlight, AClipEndsWithItsLastFrameWhereNoNumberIsStated) {
-  const std::string command =
-      "cd '" + folder_->path().string() +
-      "' && ffmpeg -nostdin -v error -y -i flight.mp4 -vf \"select='lt(n,20)+not(mod(n,2))'\" "
-      "-fps_mode vfr -c:v libx264 vfr.mkv";
-  ASSERT_EQ(std::system(command.c_str()), 0);
+  test_support::ffmpeg(folder_->path(),
+                       "-i flight.mp4 -vf \"select='lt(n,20)+not(mod(n,2))'\" -fps_mode vfr "
+                       "-c:v libx264 vfr.mkv");
   scene::Scene scene = scene_of(kSeen);
   scene.background.video = *folder_ / "vfr.mkv";
   EXPECT_GT(video::Reader(scene.background.video).info().frame_count_estimate, 30);
@@ -356,10 +353,7 @@ TEST_F(OverAFlight, ThePlanHasTheAttitudeThatIsInForce) {
 
 // A horizon that rolls is steeper in a picture of fewer columns.
 TEST_F(OverAFlight, TheAttitudeOverPixelsThatAreNotSquareIsThatOfARun) {
-  const std::string command = "cd '" + folder_->path().string() +
-                              "' && ffmpeg -nostdin -v error -y -i flight.mp4 -vf "
-                              "scale=240:240,setsar=4/3 narrow.mp4";
-  ASSERT_EQ(std::system(command.c_str()), 0);
+  test_support::ffmpeg(folder_->path(), "-i flight.mp4 -vf scale=240:240,setsar=4/3 narrow.mp4");
   scene::Scene scene = scene_of(kSeen);
   scene.background.video = *folder_ / "narrow.mp4";
   Stage stage(options());
