@@ -121,9 +121,8 @@ class Session::Impl {
   }
 
   void take(Client client, const std::string& message) {
-    const std::int64_t id = messages::id_of(message).value_or(0);
     const std::string line = fault_of([&] { answer(client, messages::request_from(message)); });
-    if (!line.empty()) ways_.send(client, error(id, line));
+    if (!line.empty()) ways_.send(client, error(messages::id_of(message).value_or(0), line));
   }
 
   void leave(Client client) {

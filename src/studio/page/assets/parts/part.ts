@@ -76,15 +76,15 @@ export function h<Name extends keyof HTMLElementTagNameMap>(
   return dressed(document.createElement(name), attributes, children);
 }
 
-// A button, and what a press on it does.
-export const button = (words: string, onclick: () => void, more: Attributes = {}): HTMLButtonElement =>
-    h('button', {onclick, ...more}, words);
-
 // The same of SVG.
 export function s<Name extends keyof SVGElementTagNameMap>(
     name: Name, attributes: Attributes = {}, ...children: Child[]): SVGElementTagNameMap[Name] {
   return dressed(document.createElementNS('http://www.w3.org/2000/svg', name), attributes, children);
 }
+
+// A button, and what a press on it does.
+export const button = (words: string, onclick: () => void, more: Attributes = {}): HTMLButtonElement =>
+    h('button', {onclick, ...more}, words);
 
 // Where an arrow key points, to the right and up, for an element that takes it from the page; null for any other key.
 export function arrow(event: KeyboardEvent): [number, number]|null {
