@@ -926,7 +926,7 @@ class Flights(unittest.TestCase):
             self.assertAlmostEqual(met.effective_count, met.weights.sum() ** 2 / (met.weights ** 2).sum())
         for options, words in (({"hmd_m": 9}, "hmd_m belongs to encounters; expected own"), ({"course_deg": 9}, "course_deg belongs to geometric"),
                                ({"own": "own.csv", "hmd_m": [9, 3]}, "hmd_m is 9 3"), ({"domain": 1}, "no geographic domain"),
-                               ({"altitude_ft": [1]}, "altitude_ft is not two"), ({"count": 0}, "0 encounters"), ({"count": -5}, "0 encounters")):
+                               ({"altitude_ft": [1]}, "altitude_ft is not two"), ({"count": 0}, "0 encounters"), ({"count": -5}, "-5 encounters")):
             with self.assertRaisesRegex(airtruth.Error, words):
                 airtruth.sample_encounters("light_aircraft.txt", **options)
         with self.assertRaisesRegex(airtruth.Error, "own is missing"):

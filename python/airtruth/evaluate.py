@@ -315,6 +315,24 @@ def hota(
     return Hota(**_core.hota(grouped, centre_px))
 
 
+def _flights(
+    truth: Sequence[ArrayLike],
+    truth_tracks: Sequence[ArrayLike],
+    detections: Sequence[ArrayLike],
+    scores: Sequence[ArrayLike],
+    tracks: Optional[Sequence[ArrayLike]],
+    ranges_m: Optional[Sequence[ArrayLike]],
+    above_horizon: Optional[Sequence[ArrayLike]],
+    sequences: Optional[Sequence[int]],
+    ignored: Optional[Sequence[ArrayLike]],
+    regions: Optional[Sequence[ArrayLike]],
+) -> List[List[Tuple[ArrayLike, ...]]]:
+    return _by_sequence(
+        truth, sequences, ignored, regions, truth_tracks=truth_tracks, ranges_m=_flags(truth, ranges_m, np.nan),
+        above_horizon=_flags(truth, above_horizon), detections=detections, scores=scores, tracks=_flags(detections, tracks, np.nan),
+    )
+
+
 def aot(
     truth: Sequence[ArrayLike],
     truth_tracks: Sequence[ArrayLike],
@@ -345,10 +363,7 @@ def aot(
     >>> seen.edr, seen.afdr, seen.hfar
     ((1, 1, 1.0), (40, 40, 1.0), 0.0)
     """
-    flights = _by_sequence(
-        truth, sequences, ignored, regions, truth_tracks=truth_tracks, ranges_m=_flags(truth, ranges_m, np.nan),
-        above_horizon=_flags(truth, above_horizon), detections=detections, scores=scores, tracks=_flags(detections, tracks, np.nan),
-    )
+    flights = _flights(truth, truth_tracks, detections, scores, tracks, ranges_m, above_horizon, sequences, ignored, regions)
     return AotScore(**_core.aot(flights, rate_hz, centre_px, min_score, min_track_frames))
 
 
@@ -375,10 +390,7 @@ def aot_ranks(
     >>> by_hfar, by_fppi.score
     (None, 0.5)
     """
-    flights = _by_sequence(
-        truth, sequences, ignored, regions, truth_tracks=truth_tracks, ranges_m=_flags(truth, ranges_m, np.nan),
-        above_horizon=_flags(truth, above_horizon), detections=detections, scores=scores, tracks=_flags(detections, tracks, np.nan),
-    )
+    flights = _flights(truth, truth_tracks, detections, scores, tracks, ranges_m, above_horizon, sequences, ignored, regions)
     found = _core.aot_ranks(flights, rate_hz, centre_px)
     by_hfar, by_fppi = (None if fields is None else AotScore(**fields) for fields in found)
     return by_hfar, by_fppi

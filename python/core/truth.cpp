@@ -13,6 +13,7 @@ namespace {
 std::string state_of(const IntruderTruth& intruder) {
   // In the order of IntruderState.
   constexpr std::array kNames = {"visible", "hidden", "outside", "behind", "ended"};
+  static_assert(kNames.size() == static_cast<std::size_t>(IntruderState::kEnded) + 1);
   return kNames.at(static_cast<std::size_t>(intruder.state));
 }
 

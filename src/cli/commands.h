@@ -104,8 +104,8 @@ inline CLI::Validator above_0() {
 }
 
 // The rate of numbered pictures, which state none.
-inline CLI::Option* add_frame_rate(CLI::App& command, std::optional<double>& rate_hz) {
-  return command.add_option("--frame-rate", rate_hz)
+inline void add_frame_rate(CLI::App& command, std::optional<double>& rate_hz) {
+  command.add_option("--frame-rate", rate_hz)
       ->description("Frames a second of numbered pictures, where nothing states it")
       ->check(above_0());
 }

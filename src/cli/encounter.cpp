@@ -63,7 +63,7 @@ void warn_of_weights(tracks_file::TracksFormat format, const std::string& out, C
     console.warning(out + ": a file of this format holds no weights; .csv does");
 }
 
-void sample(const Sample& arguments, Context& context) {
+void sample(Sample arguments, Context& context) {
   RunFiles files;
   if (!arguments.is_geometric()) files.reads(arguments.model);
   files.reads(arguments.own).writes(arguments.out, arguments.overwrite);
@@ -71,11 +71,10 @@ void sample(const Sample& arguments, Context& context) {
   const tracks_file::TracksFormat format = tracks_file::tracks_format_of(arguments.out);
   Console& console = context.console();
   const sets::SampledSet set = sets::sampled_set(arguments);
-  Sample options = arguments;
-  follow(options, context, "drawing", "encounters");
+  follow(arguments, context, "drawing", "encounters");
   sets::SetSummary summary;
   files.write(arguments.out, [&](const std::filesystem::path& at) {
-    summary = sets::write_set(at, set.draw, options);
+    summary = sets::write_set(at, set.draw, arguments);
   });
   files.commit();
   if (!arguments.own.empty() && !arguments.is_geometric())

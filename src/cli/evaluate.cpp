@@ -51,9 +51,6 @@ std::string interval(const std::optional<evaluation::Interval>& found) {
   return found ? between(found->low, found->high) : "-";
 }
 
-constexpr auto kDetectorHead =
-    "detector             sequences {:>9}            95 %   AP50     AP     score     PD"
-    "            95 %  FA/image   FA/hour";
 constexpr auto kDetectorLine =
     "{:<20} {:>9} {:>9} {:>15} {:>6} {:>6} {:>9} {:>6} {:>15} {:>9} {:>9}";
 
@@ -185,8 +182,18 @@ void add_detection_options(CLI::App& command, Evaluate& arguments, Context& cont
 }
 
 void print_detections(const scores::Assessment& assessment, Console& console) {
-  console.result(
-      fmt::format(kDetectorHead, fmt::format("AP@{:g}px", assessment.options.centre_px)));
+  console.result(fmt::format(kDetectorLine,
+                             "detector",
+                             "sequences",
+                             fmt::format("AP@{:g}px", assessment.options.centre_px),
+                             "95 %",
+                             "AP50",
+                             "AP",
+                             "score",
+                             "PD",
+                             "95 %",
+                             "FA/image",
+                             "FA/hour"));
   for (const scores::DetectorScore& detector : assessment.detectors)
     console.result(row_of(detector));
   for (const scores::DetectorScore& detector : assessment.detectors) {
@@ -196,9 +203,6 @@ void print_detections(const scores::Assessment& assessment, Console& console) {
   }
 }
 
-constexpr auto kOnePassHead =
-    "tracker              sequences    AUC            95 %   P@20     NP     AO   SR50 centre px"
-    "    mrad lost   frames/s     median";
 constexpr auto kOnePassLine =
     "{:<20} {:>9} {:>6} {:>15} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>4} {:>10} {:>10}";
 
@@ -222,7 +226,20 @@ std::string one_pass_line(const tracker_evaluation::ScoredTracker& tracker,
 }
 
 void print_one_pass(const tracker_evaluation::Assessment& assessment, Console& console) {
-  console.result(kOnePassHead);
+  console.result(fmt::format(kOnePassLine,
+                             "tracker",
+                             "sequences",
+                             "AUC",
+                             "95 %",
+                             "P@20",
+                             "NP",
+                             "AO",
+                             "SR50",
+                             "centre px",
+                             "mrad",
+                             "lost",
+                             "frames/s",
+                             "median"));
   for (const tracker_evaluation::ScoredTracker& tracker : assessment.trackers)
     if (tracker.overall) console.result(one_pass_line(tracker, *tracker.overall));
 }

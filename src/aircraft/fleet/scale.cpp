@@ -46,6 +46,8 @@ PublishedSize size_from(const std::string& line) {
 std::vector<std::string> rows_of(std::string_view table) {
   std::vector<std::string> rows = cells_of(table, '\n');
   rows.erase(rows.begin());
+  std::erase_if(rows,
+                [](const std::string& row) { return row.find_first_not_of(',') == row.npos; });
   return rows;
 }
 

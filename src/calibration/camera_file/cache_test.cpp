@@ -73,6 +73,8 @@ TEST_F(CalibrationCache, WhatIsKeptComesBackToTheLastBit) {
   c.quantities.at("air.airlight").values = {{0.1, 0.2}, {0.3, 2.0 / 7}, {1.0 / 9, 5e-324}};
   c.quantities.at("shutter.exposure_s").missing = "the clip is too still";
   c.quantities.readout.note = "by 2 of 3 clips";
+  c.no_horizon = "none is straight";
+  c.horizon_note = "by 2 frames";
   c.readout_direction = "up";
   c.downwards_s = {-1.0 / 7, 1.0 / 9};
   c.yaw_from_first_deg = {0, 1.0 / 7, -179.9};
@@ -81,6 +83,10 @@ TEST_F(CalibrationCache, WhatIsKeptComesBackToTheLastBit) {
   store(cache_, key, c);
   const auto found = cached(cache_, key);
   ASSERT_TRUE(found);
+  EXPECT_EQ(found->width, c.width);
+  EXPECT_EQ(found->height, c.height);
+  EXPECT_EQ(found->no_horizon, c.no_horizon);
+  EXPECT_EQ(found->horizon_note, c.horizon_note);
   EXPECT_EQ(found->frames, 300);
   EXPECT_EQ(found->frame_rate_hz, c.frame_rate_hz);
   EXPECT_EQ(found->lens, c.lens);

@@ -159,6 +159,13 @@ struct Calibration {
 // exceeds twice its standard error.
 inline bool rolls(const Estimate& readout) { return std::abs(readout.value) > 2 * readout.sigma; }
 
+// What is combined with other measurements of a measured quantity of the calibration: of a readout
+// the time with its sign, which the quantity has as 0 within two errors.
+inline Estimate to_combine(const Calibration& c, const Quantity& quantity) {
+  const bool is_signed = &quantity == &c.quantities.readout && c.downwards_s;
+  return is_signed ? *c.downwards_s : quantity.value();
+}
+
 // The text of camera.toml: the values, with their errors and the reasons for missing values as
 // comments.
 std::string toml_from(const Calibration& calibration);

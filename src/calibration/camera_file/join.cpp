@@ -90,9 +90,7 @@ std::vector<ClipValue> values_by_clip(const std::vector<Calibration>& clips,
   for (const Calibration& clip : clips) {
     const Quantity& quantity = clip.quantities.*member;
     if (!quantity.is_measured()) continue;
-    const bool is_signed = member == &Quantities::readout && clip.downwards_s;
-    all.push_back(
-        {is_signed ? *clip.downwards_s : quantity.value(), clip.video.filename().string()});
+    all.push_back({to_combine(clip, quantity), clip.video.filename().string()});
   }
   return all;
 }

@@ -80,9 +80,7 @@ void join(Calibration& c,
     put(c, key, prior);
     return;
   }
-  // The quantity of a readout is 0 within two errors, and has no sign.
-  const bool is_signed = key == kReadout && c.downwards_s;
-  const Estimate own = is_signed ? *c.downwards_s : quantity.value();
+  const Estimate own = to_combine(c, quantity);
   const double share = own_share(own, prior);
   const double off = std::abs(own.value - prior.value);
   const bool contradicts = off > kMaxDifferenceInErrors * std::hypot(own.sigma, prior.sigma);

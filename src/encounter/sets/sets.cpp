@@ -271,8 +271,7 @@ void for_each_block(const DrawEncounter& draw,
 
 void expect_count(std::int64_t count, std::int64_t most) {
   if (count < 1 || count > most)
-    throw Error(fmt::format(
-        "{} encounters are asked for; expected 1 to {}", std::max<std::int64_t>(0, count), most));
+    throw Error(fmt::format("{} encounters are asked for; expected 1 to {}", count, most));
 }
 
 }  // namespace

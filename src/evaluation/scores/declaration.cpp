@@ -100,31 +100,32 @@ class Weighted {
  public:
   void add(std::size_t sequence, const std::optional<double>& value, double weight) {
     if (!value) return;
-    for (Sums* sums : {&all_, &sequences_[sequence]}) {
-      sums->values += *value;
-      sums->weighted += *value * weight;
-      sums->weight += weight;
-      ++sums->count;
-    }
+    Sums& sums = sequences_[sequence];
+    sums.values += *value;
+    sums.weight += weight;
+    ++sums.count;
+    weighted_ += *value * weight;
+    weight_ += weight;
+    ++count_;
   }
   std::optional<WeightedMean> mean() const {
-    if (!(all_.weight > 0)) return std::nullopt;
+    if (!(weight_ > 0)) return std::nullopt;
     std::vector<double> means, weights;
     for (const auto& [sequence, sums] : sequences_) {
       means.push_back(sums.values / static_cast<double>(sums.count));
       weights.push_back(sums.weight);
     }
-    return WeightedMean{
-        all_.weighted / all_.weight, evaluation::bootstrap_mean(means, weights), all_.count};
+    return WeightedMean{weighted_ / weight_, evaluation::bootstrap_mean(means, weights), count_};
   }
 
  private:
   struct Sums {
-    double values = 0, weighted = 0, weight = 0;
+    double values = 0, weight = 0;
     std::int64_t count = 0;
   };
-  Sums all_;
   std::map<std::size_t, Sums> sequences_;
+  double weighted_ = 0, weight_ = 0;
+  std::int64_t count_ = 0;
 };
 
 }  // namespace

@@ -354,7 +354,7 @@ namespace {
 void expect_names_below(const Part& part) {
   if (part.name.empty() || part.name == "." || part.name == ".." ||
       part.name.find('/') != std::string::npos)
-    throw Error("'" + part.name + "' is no name of a part; expected " + kPlainFileName);
+    throw Error("'" + part.name + "' is no name of a part; expected a plain file name");
   for (const Clip& clip : part.clips)
     if (const fs::path name(clip.name);
         name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end())
