@@ -140,8 +140,8 @@ struct FrameTruth {
   // is the pixel of the frame.
   std::array<double, 9> frame_from_reference{1, 0, 0, 0, 1, 0, 0, 0, 1};
   std::array<double, 9> frame_from_reference_per_s{};
-  // Quaternion w, x, y, z that turns the nominal camera's axes into the measured one's, where
-  // motion is a rotation, and its rate in the camera's axes.
+  // Quaternion w, x, y, z that takes a direction from the nominal camera's axes to the measured
+  // one's, where motion is a rotation, and its rate: R(t + dt) = exp(rate dt) R(t).
   std::optional<std::array<double, 4>> rotation;
   std::array<double, 3> rate_radps{};
   // In the order of the scene.

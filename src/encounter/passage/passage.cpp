@@ -92,15 +92,18 @@ std::optional<Approach> closest_approach(const trajectory::Path& own,
   const std::vector<double> times_s = walked_times(own, intruder, begin_s, end_s);
   if (times_s.empty()) return std::nullopt;
   std::size_t best = 0;
-  double least_m = HUGE_VAL;
+  double least_m = HUGE_VAL, greatest_m = 0;
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     const auto both = both_at(own, intruder, times_s[i]);
-    const double distance_m = both ? both->between().offset_ned_m.norm() : HUGE_VAL;
+    if (!both) continue;
+    const double distance_m = both->between().offset_ned_m.norm();
+    greatest_m = std::max(greatest_m, distance_m);
     if (distance_m < least_m) {
       least_m = distance_m;
       best = i;
     }
   }
+  const bool is_kept = times_s.size() > 1 && greatest_m - least_m < kSameDistance_m;
   const auto is_closing = [&](double t, double least_mps) {
     const auto both = both_at(own, intruder, t);
     if (!both) return false;
@@ -112,7 +115,8 @@ std::optional<Approach> closest_approach(const trajectory::Path& own,
   const double before_s = times_s[best > 0 ? best - 1 : 0];
   const double after_s = times_s[std::min(best + 1, times_s.size() - 1)];
   const double time_s =
-      turning_point(before_s, after_s, [&](double t) { return is_closing(t, 0); });
+      is_kept ? times_s.front()
+              : turning_point(before_s, after_s, [&](double t) { return is_closing(t, 0); });
   const auto both = both_at(own, intruder, time_s);
   if (!both) return std::nullopt;
   const Vector3 offset = both->between().offset_ned_m;
@@ -120,7 +124,8 @@ std::optional<Approach> closest_approach(const trajectory::Path& own,
                   offset.norm(),
                   std::hypot(offset.x(), offset.y()),
                   offset_from(both->own, offset),
-                  best + 1 == times_s.size() && is_closing(times_s.back(), separation::kStillMps)};
+                  best + 1 == times_s.size() && is_closing(times_s.back(), separation::kStillMps),
+                  is_kept};
 }
 
 std::vector<separation::Interval> violations(const separation::Volume& volume,

@@ -35,7 +35,12 @@ struct Approach {
   Offset offset;  // of the intruder from the own aircraft
   // True where a path, or the time asked for, ends while the two still come nearer.
   bool is_cut_off = false;
+  // True where the two keep their distance within kSameDistance_m, as in formation: the moment is
+  // then the first one.
+  bool is_kept = false;
 };
+// Chosen far above what rounding makes of equal distances.
+constexpr double kSameDistance_m = 1e-6;
 
 // The path of a clip's aircraft in the time after the clip: from its own end on, one that lasts
 // until the clip's end goes straight on as it moves there; one that ends within the clip is over.

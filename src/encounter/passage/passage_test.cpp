@@ -31,6 +31,19 @@ TEST(Passage, TheClosestApproachOfStraightPathsIsTheClosedForm) {
   }
 }
 
+// No moment of a formation is nearer than another, though rounding makes one so.
+TEST(Passage, AircraftInFormationKeepTheirDistance) {
+  const separation::Mover own{{41.3, 7.1, -0.9}, {40, 0.1, 0.3}};
+  for (const Vector3 offset : {Vector3(30, 17.3, 0), Vector3(-0.1, 90.7, 3.3)}) {
+    const separation::Mover wingman{own.position_ned_m + offset, own.velocity_ned_mps};
+    const auto found = closest_approach(straight(own), straight(wingman), 0, 60);
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(found->is_kept);
+    EXPECT_EQ(found->time_s, 0);
+    EXPECT_NEAR(found->distance_m, offset.norm(), 1e-9);
+  }
+}
+
 // Two circles of one centre, 300 m and 500 m, one angle apart: they are nearest where both are in
 // one direction, (500 - 300) m apart.
 TEST(Passage, OfTurningPathsToo) {

@@ -9,9 +9,9 @@
 namespace airtruth::image {
 
 // How much a box stands out: the root mean square difference of its luma from the median of its
-// surroundings, over the standard deviation of the surroundings. These are a ring as wide as the
+// surroundings, over that of the surroundings from the same median. These are a ring as wide as the
 // box's shorter side, at least kLeastRing_px, one pixel away from the box, where the point spread
-// ends for the most part. Values beyond three deviations are left out of the deviation once. It is
+// ends for the most part. Values beyond three of their differences are left out once. That is
 // at least that of rounding to whole levels, 1 / sqrt(12). A box with nothing in it has about 1.
 // Empty where the ring has fewer than kLeastRingPixels.
 //

@@ -52,7 +52,7 @@ EncounterRecord record_of(const setup::World& world,
   record.first_seen = seen;
   const auto nearest = passage::closest_approach(camera, path, 0, end_s);
   if (nearest) {
-    if (!nearest->is_cut_off) record.closest = nearest;
+    if (!nearest->is_cut_off && !nearest->is_kept) record.closest = nearest;
     const auto own = camera.at(nearest->time_s);
     const auto intruder = path.at(nearest->time_s);
     check(own && intruder, "both are in the world where they are nearest");
