@@ -240,7 +240,7 @@ void complete(std::vector<exchange::Clip>& clips,
     auto video = options.videos.find(clip.name);
     if (video == options.videos.end() && clips.size() == 1) video = options.videos.find("");
     if (video != options.videos.end()) clip.media = video->second;
-    if (!clip.media.empty()) clip.media = fs::absolute(clip.media).lexically_normal();
+    if (!clip.media.empty()) clip.media = normal_path(fs::absolute(clip.media));
     require_utf8(clip.media);
     if (video != options.videos.end()) join_given_pictures(clip, options.warn);
     if (has_pictures(clip)) {
@@ -261,7 +261,7 @@ void complete(std::vector<exchange::Clip>& clips,
 std::string list_of_pictures(const exchange::Clip& clip) {
   std::string text;
   for (const exchange::LabelledFrame& frame : clip.frames)
-    text += (clip.media / frame.picture).lexically_normal().string() + "\n";
+    text += normal_path(clip.media / frame.picture).string() + "\n";
   return text;
 }
 

@@ -164,6 +164,17 @@ TEST_F(Files, WriteIntoMissingFolderIsAnErrorThatNamesTheFile) {
   }
 }
 
+TEST_F(Files, ANormalPathNamesTheSameFile) {
+  fs::create_directories(folder_ / "real/scenes");
+  fs::create_directory(folder_ / "user");
+  fs::create_directory_symlink(folder_ / "real/scenes", folder_ / "user/scenes");
+  EXPECT_EQ(normal_path(folder_ / "user/scenes/../clip.mp4"),
+            fs::canonical(folder_) / "real/clip.mp4");
+  EXPECT_EQ(normal_path(folder_ / "user/scenes/./clip.mp4"), folder_ / "user/scenes/clip.mp4");
+  EXPECT_EQ(normal_path(folder_ / "real/scenes/../../user/scenes"), folder_ / "user/scenes");
+  EXPECT_EQ(normal_path("a/../b.mp4"), "b.mp4");
+}
+
 TEST_F(Files, AFolderThatHoldsOthersFilesIsRefused) {
   const fs::path folder = folder_ / "made";
   EXPECT_NO_THROW(refuse_foreign(folder, {"record.json"}));

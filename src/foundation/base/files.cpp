@@ -111,6 +111,14 @@ void make_folders(const fs::path& folder, const fs::path& named) {
     throw Error("cannot create: " + failed.message(), {(named.empty() ? folder : named).string()});
 }
 
+fs::path normal_path(const fs::path& path) {
+  fs::path normal = path.lexically_normal();
+  if (std::ranges::find(path, "..") == path.end()) return normal;
+  std::error_code failed;
+  fs::path meant = fs::weakly_canonical(fs::absolute(path), failed);
+  return failed || fs::weakly_canonical(fs::absolute(normal), failed) == meant ? normal : meant;
+}
+
 fs::path first_missing(fs::path folder) {
   fs::path missing;
   while (!folder.empty() && !fs::exists(folder)) {

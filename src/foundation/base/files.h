@@ -60,6 +60,10 @@ fs::path first_missing(fs::path folder);
 // is empty.
 void remove_empty(fs::path folder, const fs::path& first);
 
+// The path without "." and "..": by its text where that names the same file, else with its links
+// followed, since "link/.." is the folder above the one that the link leads to.
+fs::path normal_path(const fs::path& path);
+
 // The folders and files of a folder, sorted by name, without hidden ones; none where it is no
 // folder.
 std::vector<fs::path> entries(const fs::path& folder);

@@ -156,7 +156,7 @@ std::optional<NumberedImages> numbered_images(const fs::path& path) {
 }
 
 fs::path whole_path(const fs::path& video) {
-  const fs::path whole = fs::absolute(video).lexically_normal();
+  const fs::path whole = normal_path(fs::absolute(video));
   return whole.has_filename() ? whole : whole.parent_path();
 }
 

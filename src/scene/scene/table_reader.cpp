@@ -242,7 +242,7 @@ std::optional<std::string> TableReader::choice(std::string_view key,
 std::optional<std::filesystem::path> TableReader::path(std::string_view key) const {
   const auto name = text(key);
   if (!name) return std::nullopt;
-  auto path = (std::filesystem::path(file_).parent_path() / *name).lexically_normal();
+  auto path = normal_path(std::filesystem::path(file_).parent_path() / *name);
   // The record of a sequence contains the full path.
   require_utf8(std::filesystem::absolute(path));
   return path;

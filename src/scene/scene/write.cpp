@@ -12,6 +12,7 @@
 
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "foundation/base/text.h"
 #include "scene/scene/camera_keys.h"
 #include "scene/scene/scene.h"
@@ -45,7 +46,7 @@ class Text {
   static std::string toml(int value) { return fmt::format("{}", value); }
   static std::string toml(std::int64_t value) { return fmt::format("{}", value); }
   static std::string toml(const fs::path& path) {
-    return toml(fs::absolute(path).lexically_normal().string());
+    return toml(normal_path(fs::absolute(path)).string());
   }
   static std::string toml(const Vector3& v) {
     return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
@@ -136,7 +137,7 @@ void add_realism(Text& text, const Realism& realism) {
 }
 
 std::string aircraft_text(const std::string& aircraft) {
-  return wrapper::is_model_file(aircraft) ? fs::absolute(aircraft).lexically_normal().string()
+  return wrapper::is_model_file(aircraft) ? normal_path(fs::absolute(aircraft)).string()
                                           : aircraft;
 }
 

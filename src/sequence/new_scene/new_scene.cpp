@@ -160,10 +160,12 @@ std::string in_quotes(const fs::path& path) {
 
 // A file as the scene names it: relative to the scene's folder where that is stated.
 std::string as_written(const fs::path& file, const NewSceneOptions& options) {
-  const fs::path whole = fs::absolute(file).lexically_normal();
-  return in_quotes(options.folder
-                       ? whole.lexically_proximate(fs::absolute(*options.folder).lexically_normal())
-                       : whole);
+  const fs::path whole = normal_path(fs::absolute(file));
+  if (!options.folder) return in_quotes(whole);
+  const fs::path folder = normal_path(fs::absolute(*options.folder));
+  const fs::path relative = whole.lexically_proximate(folder);
+  // A folder that is a link has another one above it.
+  return in_quotes(normal_path(folder / relative) == whole ? relative : whole);
 }
 
 LensWords in_words(const lens::Lens& lens, const std::string& origin) {

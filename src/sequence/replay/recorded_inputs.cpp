@@ -5,6 +5,7 @@
 #include <map>
 
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
 #include "sequence/setup/motion_source.h"
 
@@ -29,7 +30,7 @@ std::optional<fs::path> find_recorded(const fs::path& name,
   const bool is_changed = is_another(name, sha256, inputs);
   if (!is_changed && fs::exists(name, none)) return name;
   // The sequence lies in sequences/NAME, or in a numbered folder: sequences/0001/NAME.
-  fs::path above = fs::absolute(sequence / "sequence.json").lexically_normal().parent_path();
+  fs::path above = normal_path(fs::absolute(sequence / "sequence.json")).parent_path();
   above = above.parent_path();
   for (int i = 0; i < 2; ++i) {
     above = above.parent_path();
