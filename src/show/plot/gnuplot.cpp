@@ -11,6 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 #include "foundation/run_files/memory_place.h"
 #include "picture/video/still.h"
 
@@ -248,6 +249,19 @@ void run(const fs::path& folder, const fs::path& script) {
                 {script.string()});
 }
 
+// How a whole file of the format ends, but for line ends.
+std::string_view end_of(Format format) {
+  switch (format) {
+    case Format::kPng:
+      return "IEND\xae\x42\x60\x82";
+    case Format::kPdf:
+      return "%%EOF";
+    case Format::kSvg:
+      return "</svg>";
+  }
+  return {};
+}
+
 // Room for the longest name of the legend and the mark beside it, in letters. Longer names than the
 // most lie over the plot.
 std::size_t legend_letters(const Sheet& sheet) {
@@ -302,6 +316,10 @@ void draw(const Sheet& sheet, const fs::path& folder, const std::string& name, F
     if (const image::Rgb8* picture = sheet.plots[i].picture)
       video::write_still(folder / picture_file(name, i), *picture, Flush::kLater);
   run(folder, script);
+  // gnuplot says nothing of a full disk.
+  const fs::path file = folder / (name + "." + enum_name(format));
+  if (!fs::exists(file) || !trimmed(read_file(file)).ends_with(end_of(format)))
+    throw Error("cannot be written: is the disk full?", {file.string()});
 }
 
 image::Rgb8 picture_of(const Sheet& sheet) {

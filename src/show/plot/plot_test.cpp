@@ -9,9 +9,11 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
 #include "show/plot/gnuplot.h"
+#include "support/environment_variable.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::plot {
@@ -218,6 +220,25 @@ TEST(Gnuplot, NamesOfAUserRunNothing) {
   EXPECT_TRUE(fs::exists(folder / "p.svg"));
   EXPECT_TRUE(fs::exists(folder / "p.gnuplot"));
   EXPECT_FALSE(fs::exists(folder / "ran"));
+}
+
+// gnuplot ends well where the disk is full, and leaves a part.
+TEST(Gnuplot, AFileThatIsNotWholeIsAnError) {
+  const test_support::TemporaryFolder temporary;
+  const fs::path& folder = temporary.path();
+  write_file(folder / "gnuplot",
+             "#!/bin/sh\ncat > /dev/null\nprintf '<svg>' > " + (folder / "p.svg").string() + "\n");
+  fs::permissions(folder / "gnuplot", fs::perms::owner_all);
+  const test_support::EnvironmentVariable path("PATH", folder.string() + ":" + std::getenv("PATH"));
+  Sheet sheet;
+  sheet.plots.push_back(two_levels());
+  std::string message;
+  try {
+    draw(sheet, folder, "p", Format::kSvg);
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  EXPECT_EQ(message, (folder / "p.svg").string() + ": cannot be written: is the disk full?");
 }
 
 }  // namespace
