@@ -34,7 +34,7 @@ TEST(Passage, TheClosestApproachOfStraightPathsIsTheClosedForm) {
 // No moment of a formation is nearer than another, though rounding makes one so.
 TEST(Passage, AircraftInFormationKeepTheirDistance) {
   const separation::Mover own{{41.3, 7.1, -0.9}, {40, 0.1, 0.3}};
-  for (const Vector3 offset : {Vector3(30, 17.3, 0), Vector3(-0.1, 90.7, 3.3)}) {
+  for (const Vector3& offset : {Vector3(30, 17.3, 0), Vector3(-0.1, 90.7, 3.3)}) {
     const separation::Mover wingman{own.position_ned_m + offset, own.velocity_ned_mps};
     const auto found = closest_approach(straight(own), straight(wingman), 0, 60);
     ASSERT_TRUE(found);

@@ -137,8 +137,7 @@ void add_realism(Text& text, const Realism& realism) {
 }
 
 std::string aircraft_text(const std::string& aircraft) {
-  return wrapper::is_model_file(aircraft) ? normal_path(fs::absolute(aircraft)).string()
-                                          : aircraft;
+  return wrapper::is_model_file(aircraft) ? normal_path(fs::absolute(aircraft)).string() : aircraft;
 }
 
 void add_encounter(Text& text, const Encounter& encounter, std::string_view table) {
