@@ -107,6 +107,30 @@ class MadeAircraft(Case):
                         self.assertLess(outside, 1, (kind, exposure_s, one["id"], exact, changed))
                         self.assertGreater(outside, -3, (kind, exposure_s, one["id"], exact, changed))
 
+    def test_what_reaches_behind_the_camera_lies_in_its_exact_box(self):
+        """A triangle of 12 m, 1 m below the camera: its corners ahead bound only a part of what is seen, and where none is ahead nothing."""
+        write("triangle.obj", "v -6 0 0\nv 6 -5 0\nv 6 5 0\nf 1 2 3\nf 3 2 1\n")
+        for ahead_m, yaw_deg in ((0, 0), (0, 180), (-3, 0), (4, 180)):
+            write("pass.toml", scene("trike", 0.00001).split("[[intruder]]")[0] + f"""
+[[intruder]]
+id = "near"
+aircraft = "triangle.obj"
+model_forward = "x"
+model_up = "z"
+waypoints_ned_m = [[{ahead_m}, 0.3, -499], [{ahead_m + 0.01}, 0.3, -499]]
+speed_mps = 0.002
+yaw_deg = {yaw_deg}
+pitch_deg = 0
+roll_deg = 0
+""")
+            made("render", "pass.toml", "--out", "out", "--overwrite")
+            near = json.loads(read("out", "pass", "truth.jsonl").splitlines()[0])["intruders"][0]
+            (x, y, width, height), covered = near["exact_box_px"], near["covered_box_px"]
+            self.assertEqual(near["state"], "visible")
+            self.assertGreater(covered[2] * covered[3], 100 * 100, ahead_m)
+            self.assertTrue(x < covered[0] + 1 and y < covered[1] + 1, (near["exact_box_px"], covered))
+            self.assertTrue(x + width > covered[0] + covered[2] - 1 and y + height > covered[1] + covered[3] - 1, (near["exact_box_px"], covered))
+
     def test_a_catalogue_draws_them_by_pattern(self):
         write("set.toml", """
 name = "set"

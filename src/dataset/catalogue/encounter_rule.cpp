@@ -432,6 +432,19 @@ DrawnIntruder seen_intruder(const EncounterRule& rule,
   return longest;
 }
 
+// The mean weight of an intruder in traffic that is uniform over both distances. A pair's product
+// is counted in it, so that pairs are as large a share of all weights as they are of the sequences.
+double mean_weight(const EncounterRule& rule, const track::Track& own, std::uint64_t number) {
+  constexpr std::uint64_t kTracks = 32;  // their mean is within a tenth: chosen
+  const auto draw = sets::model_pairs(rule.tracks,
+                                      own,
+                                      {.cpa_time_s = std::floor(own.times_s.back() / 2)},
+                                      Seed(rule.seed).stream("mean weight", number)());
+  double sum = 0;
+  for (std::uint64_t i = 0; i < kTracks; ++i) sum += draw(i).encounter.weight;
+  return sum / kTracks;
+}
+
 }  // namespace
 
 std::string likely_aircraft(const EncounterRule& rule, std::int64_t index) {
@@ -455,14 +468,15 @@ Draws add_encounter(scene::Scene& scene,
                             clip_s),
                 rule.where);
   double weight = 1;
-  for (std::uint64_t k = 0; k < (has_second(rule, index) ? 2u : 1u); ++k) {
+  const std::uint64_t count = has_second(rule, index) ? 2 : 1;
+  for (std::uint64_t k = 0; k < count; ++k) {
     DrawnIntruder one = rule.in_view
                             ? seen_intruder(rule, scene.camera, own, number, k, views, draws)
                             : drawn_intruder(rule, own, number, k, 0);
     weight *= one.weight;
     scene.intruders.push_back(std::move(one.intruder));
   }
-  if (rule.tracks) scene.weight = weight;
+  if (rule.tracks) scene.weight = count == 2 ? weight / mean_weight(rule, own, number) : weight;
   return draws;
 }
 

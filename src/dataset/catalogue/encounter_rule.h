@@ -84,10 +84,10 @@ std::vector<EncounterRule> encounter_rules(const scene::TableReader& root,
 std::string likely_aircraft(const EncounterRule& rule, std::int64_t index);
 
 // Gives the scene, whose camera is the own aircraft, the intruders of sequence `index` and, where
-// they come from a model, its weight: the product of those of the intruders. A negative sequence
-// gets none. Types are taken evenly in turn where their class flies the track, else one that does,
-// at its usual speed where there is one. By a rule of in_view an intruder is drawn again where the
-// camera does not see it, at most kMostDraws times. Where the own aircraft is
+// they come from a model, its weight, of two intruders the product over the mean weight of one. A
+// negative sequence gets none. Types are taken evenly in turn where their class flies the track,
+// else one that does, at its usual speed where there is one. By a rule of in_view an intruder is
+// drawn again where the camera does not see it, at most kMostDraws times. Where the own aircraft is
 // higher than kLowestFlightM, so is every intruder.
 //
 // A track that is too low, or of a model one that no aircraft of the rule flies, is drawn again; a

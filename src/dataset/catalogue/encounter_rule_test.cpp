@@ -94,6 +94,17 @@ TEST_F(EncounterModel, AStatedGeometryPassesWithinATenthOfAMetre) {
   }
 }
 
+// A weight is a speed, and a product of two would be 60 times a single one's.
+TEST_F(EncounterModel, PairsAreTheShareOfTheWeightsThatTheyAreOfTheSequences) {
+  const Catalogue catalogue = with(std::string(kBayes) + "count = 120\ntwo_intruders = 0.5\n");
+  double single = 0, pairs = 0;
+  for (std::int64_t i = 0; i < 120; ++i) {
+    const Item item = first_drawn(catalogue, i);
+    (item.scene.intruders.size() == 2 ? pairs : single) += item.scene.weight.value();
+  }
+  EXPECT_NEAR(pairs / (single + pairs), 0.5, 0.08);
+}
+
 TEST_F(EncounterModel, AGeometryThatTurnsComesNoNearerAtAnotherTime) {
   const Catalogue catalogue = with(
       "kind = \"geometric\"\ncount = 20\nhmd_m = [200, 300]\nspeed_mps = [40, 60]\n"
