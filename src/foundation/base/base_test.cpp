@@ -224,6 +224,8 @@ TEST(Median, IsTheUpperOfTwoMiddleValues) {
 
 TEST(PartPath, HidesAndKeepsTheExtension) {
   EXPECT_EQ(part_path("out/a.mp4"), fs::path("out/.a.part.mp4"));
+  const std::string longest = std::string(251, 'n') + ".png";
+  EXPECT_EQ(part_path(longest), fs::path("." + std::string(245, 'n') + ".part.png"));
 }
 
 TEST(WriteFile, ANameThatHoldsANulIsRefused) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <climits>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -207,8 +208,10 @@ void flush_files(const fs::path& folder) {
 }
 
 fs::path part_path(const fs::path& path) {
+  const std::string ending = ".part" + path.extension().string();
+  const std::size_t room = NAME_MAX - std::min<std::size_t>(NAME_MAX, 1 + ending.size());
   fs::path part = path;
-  part.replace_filename("." + path.stem().string() + ".part" + path.extension().string());
+  part.replace_filename("." + path.stem().string().substr(0, room) + ending);
   return part;
 }
 

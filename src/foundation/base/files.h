@@ -47,7 +47,7 @@ void refuse_foreign(const fs::path& folder, std::initializer_list<const char*> r
 void flush_files(const fs::path& folder);
 
 // The name under which a file is written before it is renamed: "dir/a.mp4" -> "dir/.a.part.mp4"
-// (the extension stays, since encoders choose by it).
+// (the extension stays, since encoders choose by it). A long name is cut to what Linux takes.
 fs::path part_path(const fs::path& path);
 
 // Makes a folder and those above it that are not there yet. Throws Error where that fails; it is

@@ -101,6 +101,24 @@ void refuse_twice(const std::vector<fs::path>& inputs) {
                     {inputs[i].string()});
 }
 
+// A folder is moved in one step where there is none of its name, so that a run that is killed
+// leaves no part of it there.
+void move_all(const fs::path& from, const fs::path& to) {
+  std::vector<fs::path> all;
+  for (const fs::directory_entry& entry : fs::directory_iterator(from)) all.push_back(entry.path());
+  std::sort(all.begin(), all.end());
+  for (const fs::path& each : all) {
+    const fs::path place = to / each.filename();
+    if (fs::is_directory(each) && fs::is_directory(place)) {
+      move_all(each, place);
+      continue;
+    }
+    std::error_code failed;
+    fs::rename(each, place, failed);
+    if (failed) throw Error("cannot create: " + failed.message(), {place.string()});
+  }
+}
+
 // A hidden folder of this run, locked as long as the run lives.
 class RunFiles::Hidden {
  public:
@@ -139,12 +157,7 @@ class RunFiles::Hidden {
   void move() {
     unfinished_->finish([this] {
       first_made_.clear();
-      for (const auto& [from, to] : moves()) {
-        std::error_code failed;
-        fs::create_directories(to.parent_path(), failed);
-        if (!failed) fs::rename(from, to, failed);
-        if (failed) throw Error("cannot create: " + failed.message(), {to.string()});
-      }
+      move_all(path_, parent_);
     });
   }
 

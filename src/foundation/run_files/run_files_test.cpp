@@ -4,6 +4,7 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -100,6 +101,30 @@ TEST_F(RunFilesTest, AFolderOfOthersIsNotWrittenInto) {
   file(".airtruth.part-0");  // a run was killed while it moved the page into place
   EXPECT_NO_THROW(into());
   EXPECT_THROW(RunFiles().writes_into(folder_ / "."), Error);
+}
+
+// Were its files moved one by one, a run that is killed meanwhile would leave a part of a set.
+TEST_F(RunFilesTest, ANewFolderOfAnOutputIsMovedInOneStep) {
+  const auto number = [](const fs::path& at) {
+    struct stat found {};
+    EXPECT_EQ(::stat(at.c_str(), &found), 0);
+    return found.st_ino;
+  };
+  for (const char* name : {"a", "b"}) {
+    RunFiles files;
+    files.writes_into(folder_ / "set", {"sequences"});
+    files.begin();
+    ino_t written = 0;
+    files.write(folder_ / "set", [&](const fs::path& at) {
+      fs::create_directory(at / "sequences");
+      write_file(at / "sequences" / name, name);
+      written = number(at / "sequences");
+    });
+    files.commit();
+    EXPECT_EQ(number(folder_ / "set/sequences") == written, *name == 'a');
+    EXPECT_EQ(read_file(folder_ / "set/sequences" / name), name);
+  }
+  EXPECT_EQ(read_file(folder_ / "set/sequences/a"), "a");
 }
 
 TEST_F(RunFilesTest, AFaultNamesTheOutput) {
