@@ -356,10 +356,11 @@ void drop_hours_unless_all_known(SetTruth& set) {
       std::ranges::count_if(set.sequences, [](const auto& t) { return !(t.duration_s > 0); });
   if (unknown == 0) return;
   for (scores::TruthSequence& truth : set.sequences) truth.duration_s = 0;
-  set.left_out.push_back(fmt::format(
-      "the frame rate is unknown for {} of {} sequences; there are no false alarms an hour",
-      unknown,
-      set.sequences.size()));
+  set.left_out.push_back(
+      fmt::format("the frame rate is unknown for {} of {} sequences; there are no durations, nor "
+                  "false alarms and tracks an hour",
+                  unknown,
+                  set.sequences.size()));
 }
 
 void expect_volume(const SetTruth& set, const std::string& volume) {
