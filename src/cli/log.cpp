@@ -145,15 +145,21 @@ void align(const AlignArguments& arguments, Context& context) {
   const auto motion = motion_of(arguments, context);
   const flight_log::Alignment found = flight_log::aligned(rates, motion);
   if (!found.fit) throw Error("cannot be aligned: " + found.why, {arguments.log});
+  // A scene's times count from the first frame that it uses.
+  const std::string first =
+      arguments.first_frame > 0
+          ? fmt::format("[background]\nfirst_frame = {}\n", arguments.first_frame)
+          : "";
   context.console().result(fmt::format(
       "the log's time is the clip's plus {:.3f} +- {:.3f} s (correlation of turn rates {:.2f}; "
       "beyond "
-      "{:.0f} s of it {:.2f} at most)\nfor a scene:\n[camera]\nlog = {}\nlog_offset_s = {:.3f}",
+      "{:.0f} s of it {:.2f} at most)\nfor a scene:\n{}[camera]\nlog = {}\nlog_offset_s = {:.3f}",
       found.fit->offset_s,
       found.fit->offset_sigma_s,
       found.fit->correlation,
       flight_log::kApartS,
       found.other_correlation,
+      first,
       toml_string(arguments.log),
       found.fit->offset_s));
 }
