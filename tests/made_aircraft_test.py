@@ -60,6 +60,25 @@ roll_deg = {roll}
     return text
 
 
+def render_triangle(materials, ahead_m, yaw_deg):
+    """A triangle of 12 m, 1 m below the camera, and its truth."""
+    write("triangle.obj", materials + "v -6 0 0\nv 6 -5 0\nv 6 5 0\nf 1 2 3\nf 3 2 1\n")
+    write("pass.toml", scene("trike", 0.00001).split("[[intruder]]")[0] + f"""
+[[intruder]]
+id = "near"
+aircraft = "triangle.obj"
+model_forward = "x"
+model_up = "z"
+waypoints_ned_m = [[{ahead_m}, 0.3, -499], [{ahead_m + 0.01}, 0.3, -499]]
+speed_mps = 0.002
+yaw_deg = {yaw_deg}
+pitch_deg = 0
+roll_deg = 0
+""")
+    made("render", "pass.toml", "--out", "out", "--overwrite")
+    return json.loads(read("out", "pass", "truth.jsonl").splitlines()[0])["intruders"][0]
+
+
 def luma_of(file):
     raw = subprocess.run(["ffmpeg", "-v", "error", "-i", file, "-f", "rawvideo", "-pix_fmt", "gray", "-"], stdout=subprocess.PIPE, check=True).stdout
     return [raw[at:at + WIDTH * HEIGHT] for at in range(0, len(raw), WIDTH * HEIGHT)]
@@ -108,28 +127,19 @@ class MadeAircraft(Case):
                         self.assertGreater(outside, -3, (kind, exposure_s, one["id"], exact, changed))
 
     def test_what_reaches_behind_the_camera_lies_in_its_exact_box(self):
-        """A triangle of 12 m, 1 m below the camera: its corners ahead bound only a part of what is seen, and where none is ahead nothing."""
-        write("triangle.obj", "v -6 0 0\nv 6 -5 0\nv 6 5 0\nf 1 2 3\nf 3 2 1\n")
+        """Corners ahead bound only a part of what is seen, and where none is ahead nothing."""
         for ahead_m, yaw_deg in ((0, 0), (0, 180), (-3, 0), (4, 180)):
-            write("pass.toml", scene("trike", 0.00001).split("[[intruder]]")[0] + f"""
-[[intruder]]
-id = "near"
-aircraft = "triangle.obj"
-model_forward = "x"
-model_up = "z"
-waypoints_ned_m = [[{ahead_m}, 0.3, -499], [{ahead_m + 0.01}, 0.3, -499]]
-speed_mps = 0.002
-yaw_deg = {yaw_deg}
-pitch_deg = 0
-roll_deg = 0
-""")
-            made("render", "pass.toml", "--out", "out", "--overwrite")
-            near = json.loads(read("out", "pass", "truth.jsonl").splitlines()[0])["intruders"][0]
+            near = render_triangle("", ahead_m, yaw_deg)
             (x, y, width, height), covered = near["exact_box_px"], near["covered_box_px"]
             self.assertEqual(near["state"], "visible")
             self.assertGreater(covered[2] * covered[3], 100 * 100, ahead_m)
             self.assertTrue(x < covered[0] + 1 and y < covered[1] + 1, (near["exact_box_px"], covered))
             self.assertTrue(x + width > covered[0] + covered[2] - 1 and y + height > covered[1] + covered[3] - 1, (near["exact_box_px"], covered))
+
+    def test_a_file_that_a_model_names_in_other_letters_is_recorded_as_it_is_called(self):
+        write("triangle.mtl", "newmtl red\nKd 1 0 0\n")
+        render_triangle("mtllib TRIANGLE.MTL\nusemtl red\n", 4, 180)
+        self.assertIn("/triangle.mtl", read("out", "pass", "sequence.json"))
 
     def test_a_catalogue_draws_them_by_pattern(self):
         write("set.toml", """

@@ -63,11 +63,13 @@ DiskFiles::DiskFiles(const fs::path& folder,
   folder_ = fs::canonical(folder.empty() ? fs::path(".") : folder, ignored);
 }
 
-// The file of that name, whatever the case of its letters: names from DOS and Windows have none.
-// The path itself where there is no such file, or several.
+// The file of that name, whatever the case of its letters where that is asked for: names from DOS
+// and Windows have none. The path itself where there is no such file, or several.
 fs::path DiskFiles::whatever_case(const fs::path& path) const {
   std::error_code failed;
-  if (fs::exists(fs::symlink_status(folder_ / path, failed))) return path;
+  if (letter_case_ == LetterCase::kMatters ||
+      fs::exists(fs::symlink_status(folder_ / path, failed)))
+    return path;
   const fs::path folder = path.parent_path();
   const std::string wanted = lower_case(path.filename().string());
   fs::path found;
@@ -86,8 +88,7 @@ fs::path DiskFiles::whatever_case(const fs::path& path) const {
 // The path without symbolic links; empty where nothing is there or it leads out of the folder.
 fs::path DiskFiles::resolved(const fs::path& path) const {
   std::error_code missing;
-  const fs::path named = letter_case_ == LetterCase::kIgnored ? whatever_case(path) : path;
-  const fs::path real = fs::canonical(folder_ / named, missing);
+  const fs::path real = fs::canonical(folder_ / whatever_case(path), missing);
   if (missing || folder_.empty()) return {};
   const auto differ = std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end()).first;
   return differ == folder_.end() ? real : fs::path();
@@ -120,7 +121,7 @@ std::string DiskFiles::read_below(const fs::path& path, std::size_t max_bytes) {
   } catch (const Error& error) {
     throw Error(error.message(), {name});
   }
-  sources_.push_back(shown(path));
+  sources_.push_back(shown(whatever_case(path)));
   if (hashes_) asked_.push_back({path.string(), sha256_of(bytes)});
   return bytes;
 }
