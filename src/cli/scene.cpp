@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes to begin: as a file, and on the page of the studio.
-#include <algorithm>
-#include <cctype>
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -56,17 +53,6 @@ struct NewArguments : Input {
   std::string out;
   bool overwrite = false;
 };
-
-// The name of a file as it can be pasted into a shell, where one that begins with a dash would be
-// an option.
-std::string pasted(const std::string& file) {
-  const std::string name = file.starts_with('-') ? "./" + file : file;
-  const bool is_plain = std::ranges::all_of(name, [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("._-/").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  return is_plain ? name : shell_word(name);
-}
 
 void new_scene(const NewArguments& arguments, Context& context) {
   const std::string out =

@@ -65,10 +65,10 @@ fs::path plain_path(const char* path) {
   return fs::path(text).lexically_normal();
 }
 
-// The text of an OBJ file as assimp (5.2.5) reads it rightly: without blanks at the beginning of a
-// line, and with a 0 before each number of a vertex that begins with its dot. assimp drops such
-// lines, so that all faces behind them name other vertices.
-std::string plain_obj(const std::string& obj) {
+// The text of an OBJ file as assimp (5.2.5) reads it rightly: without a byte order mark, blanks at
+// the beginning of a line, and with a 0 before each number of a vertex that begins with its dot.
+// assimp drops such lines, so that all faces behind them name other vertices.
+std::string plain_obj(std::string_view obj) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
   std::string text;
   text.reserve(obj.size());
@@ -83,18 +83,38 @@ std::string plain_obj(const std::string& obj) {
   return text;
 }
 
-// Whether the text of an .mtl file moves, scales or warps the picture of a material.
-bool moves_pictures(std::string mtl) {
+struct Mtl {
+  std::string text;
+  bool moves_pictures = false;  // or scales or warps those of a material
+};
+
+// An .mtl file, in which a material with a picture and without a colour is white beneath it: assimp
+// takes such a one for grey.
+Mtl read_mtl(std::string mtl) {
   std::replace(mtl.begin(), mtl.end(), '\t', ' ');
   std::istringstream lines(std::move(mtl));
+  Mtl result;
+  bool has_colour = false, has_picture = false;
+  const auto end_material = [&] {
+    if (has_picture && !has_colour) result.text += "Kd 1 1 1\n";
+    has_colour = has_picture = false;
+  };
   for (std::string line; std::getline(lines, line);) {
     const std::vector<std::string> words = words_in(line);
-    if (!words.empty() && lower_case(words[0]) == "map_kd" &&
-        std::ranges::any_of(
-            words, [](const auto& word) { return word == "-s" || word == "-o" || word == "-t"; }))
-      return true;
+    const std::string key = words.empty() ? "" : lower_case(words[0]);
+    if (key == "newmtl") end_material();
+    has_colour = has_colour || key == "kd";
+    if (key == "map_kd") {
+      has_picture = true;
+      result.moves_pictures =
+          result.moves_pictures || std::ranges::any_of(words, [](const auto& word) {
+            return word == "-s" || word == "-o" || word == "-t";
+          });
+    }
+    result.text += line + "\n";
   }
-  return false;
+  end_material();
+  return result;
 }
 
 // The file system that assimp sees: the model's files, complete and read-only. The class records
@@ -114,9 +134,12 @@ class AssimpFiles : public Assimp::IOSystem {
       return nullptr;
     }
     std::string bytes = files_.read(file, model::kMaxModelBytes);
-    if (wrapper::ending_of(file) == ".obj") bytes = plain_obj(bytes);
-    if (wrapper::ending_of(file) == ".mtl")
-      moves_pictures_ = moves_pictures_ || moves_pictures(bytes);
+    if (wrapper::ending_of(file) == ".obj") bytes = plain_obj(without_mark(bytes));
+    if (wrapper::ending_of(file) == ".mtl") {
+      Mtl mtl = read_mtl(std::move(bytes));
+      moves_pictures_ = moves_pictures_ || mtl.moves_pictures;
+      bytes = std::move(mtl.text);
+    }
     return MemoryStream::of(bytes);
   }
   void Close(Assimp::IOStream* stream) override { delete stream; }
@@ -171,6 +194,9 @@ class SceneReader {
       assembly_.warn("the colours of its vertices are not read; materials and textures show");
     if (is_inverted_)
       assembly_.warn("a material that states that nothing of it is seen is shown opaque");
+    if (is_mirrored_)
+      assembly_.warn("a texture is to be mirrored beyond its edges; it is repeated there");
+    if (has_bones_) assembly_.warn("bones are not read; the mesh stands as its node puts it");
   }
 
  private:
@@ -196,6 +222,7 @@ class SceneReader {
     aiMatrix3x3 normals_from_node(file_from_node);
     normals_from_node.Inverse().Transpose();
     if (mesh.HasVertexColors(0)) has_vertex_colours_ = true;
+    if (mesh.HasBones()) has_bones_ = true;
     const auto add_vertex = [&](unsigned i, const aiVector3D& normal) {
       const aiVector3D p = file_from_node * mesh.mVertices[i];
       batch.positions.emplace_back(p.x, p.y, p.z);
@@ -284,6 +311,8 @@ class SceneReader {
       if (material.GetTexture(kind, 0, &path, nullptr, &uv_channel, nullptr, nullptr, modes) !=
           aiReturn_SUCCESS)
         continue;
+      is_mirrored_ = is_mirrored_ || modes[0] == aiTextureMapMode_Mirror ||
+                     modes[1] == aiTextureMapMode_Mirror;
       batch.sampling.repeat_u =
           modes[0] == aiTextureMapMode_Wrap || modes[0] == aiTextureMapMode_Mirror;
       batch.sampling.repeat_v =
@@ -315,6 +344,8 @@ class SceneReader {
   std::map<std::pair<const aiTexture*, ac3d::Sampling>, int> picture_of_texture_;
   bool has_vertex_colours_ = false;
   bool is_inverted_ = false;
+  bool is_mirrored_ = false;
+  bool has_bones_ = false;
 };
 
 // Removes all importers except those of the ending, so that the content of a file cannot choose
@@ -340,7 +371,8 @@ void warn_of_missing(wrapper::Assembly& assembly, const AssimpFiles& files) {
 
 // Extensions of glTF by which a file states pictures or vertices otherwise, and which assimp passes
 // over in silence.
-constexpr std::array<const char*, 5> kUnreadExtensions = {"EXT_texture_webp",
+constexpr std::array<const char*, 6> kUnreadExtensions = {"EXT_texture_webp",
+                                                          "EXT_mesh_gpu_instancing",
                                                           "KHR_texture_basisu",
                                                           "MSFT_texture_dds",
                                                           "EXT_meshopt_compression",

@@ -97,6 +97,28 @@ TEST_F(Formats, WhatOfAnMtlIsNotReadIsSaid) {
   EXPECT_EQ(warnings("map_Kd t.tga\nmap_d t.tga\nmap_Bump -s 2 2 2 t.tga"), "");
 }
 
+// Editors of Windows write a byte order mark. The last vertex is spare.
+TEST_F(Formats, AnObjMayBeginWithAByteOrderMark) {
+  const auto loaded =
+      load("a.obj", "\xEF\xBB\xBFv 0 0 0\nv 3 0 0\nv 0 2 0\nv 0 0 1\nv 9 9 9\nf 1 2 3\nf 1 3 4\n");
+  expect_size(loaded);
+  EXPECT_EQ(loaded.mesh.triangle_count(), 2U);
+}
+
+// A picture stands in for the colour that is not stated, and not on a grey.
+TEST_F(Formats, AMaterialOfAPictureAloneIsWhiteBeneathIt) {
+  write_file(folder_ / "t.tga",
+             std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\30\0", 18) + "\xff\xff\xff");
+  write_file(folder_ / "a.mtl",
+             "newmtl stated\nmap_Kd t.tga\nKd 0.5 0.5 0.5\nnewmtl none\nmap_Kd\tt.tga\n");
+  for (const auto& [name, expected] : {std::pair("stated", 0.5f), {"none", 1.0f}}) {
+    const auto loaded = load("a.obj",
+                             std::string("mtllib a.mtl\nusemtl ") + name +
+                                 "\nv 0 0 0\nv 3 0 0\nv 0 2 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+    EXPECT_FLOAT_EQ(loaded.mesh.materials.at(0).diffuse[0], expected) << name;
+  }
+}
+
 TEST_F(Formats, StlAndPlyAreRead) {
   const auto facet = [](const std::string& a, const std::string& b, const std::string& c) {
     return "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c +
@@ -170,6 +192,25 @@ TEST_F(Formats, AGltfWithoutNormalsIsFlat) {
     for (const std::uint32_t vertex : mesh.parts.at(0).triangles.at(i).vertex)
       EXPECT_TRUE(mesh.normals.at(vertex).isApprox(expected[i]))
           << mesh.normals[vertex].transpose();
+}
+
+TEST_F(Formats, WhatOfAGltfIsNotReadIsSaid) {
+  const std::string textured =
+      gltf_of(R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0}})");
+  const auto warnings = [&](const std::string& from, const std::string& to) {
+    std::string text = textured;
+    text.replace(text.find(from), from.size(), to);
+    warnings_.clear();
+    load("a.gltf", text);
+    return warnings_;
+  };
+  EXPECT_EQ(warnings("\"scene\"", "\"scene\""), "");
+  EXPECT_THAT(warnings("[{\"source\": 0}]",
+                       R"([{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 33648}])"),
+              testing::HasSubstr("mirrored beyond its edges"));
+  EXPECT_THAT(
+      warnings("{\"mesh\": 0}", R"({"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {}}})"),
+      testing::HasSubstr("EXT_mesh_gpu_instancing of glTF is not read"));
 }
 
 // glTF 2.0, section 3.9.4: alpha is opacity in the mode BLEND alone.

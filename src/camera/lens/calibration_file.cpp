@@ -134,7 +134,7 @@ std::string how_to_crop(const std::filesystem::path& path, const Calibration& c,
            "of the turned picture, or a video that is not turned";
   return "; where the video is the middle of that picture, cut and not squeezed, `airtruth lens "
          "crop " +
-         path.string() + " --size " + words(size) + " -o LENS.yml` writes its lens";
+         pasted(path.string()) + " --size " + words(size) + " -o LENS.yml` writes its lens";
 }
 
 // Profiles of the same camera beside the file whose aspect ratio is the video's, at most three.

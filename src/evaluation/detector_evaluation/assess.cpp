@@ -175,18 +175,18 @@ bool has_ending(const fs::path& file, const char* ending) {
 
 enum class Text { kEmpty, kMotOfDetector, kOther };
 
-// MOTChallenge's lines have an id as their second cell of seven or more; a detection without a
-// track has the id -1.
+// MOTChallenge's lines have an id as their second cell of seven or more, between commas, blanks or
+// tabs; a detection without a track has the id -1.
 Text text_of(const fs::path& file, bool with_tracks) {
   std::ifstream text(file);
   std::string line;
   while (std::getline(text, line)) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    if (std::count(line.begin(), line.end(), ',') < 6) return Text::kOther;
-    const std::size_t first = line.find(',') + 1;
-    const std::string_view second =
-        std::string_view(line).substr(first, line.find(',', first) - first);
-    const bool has_no_track = number_from_text<double>(trimmed(second)) == -1;
+    std::ranges::replace_if(
+        line, [](char c) { return c == ',' || c == '\t' || c == '\r'; }, ' ');
+    const std::vector<std::string> cells = words_in(line);
+    if (cells.size() < 7) return Text::kOther;
+    const bool has_no_track = number_from_text<double>(cells[1]) == -1;
     return with_tracks || has_no_track ? Text::kMotOfDetector : Text::kOther;
   }
   return Text::kEmpty;

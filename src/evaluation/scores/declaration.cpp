@@ -75,8 +75,9 @@ InTime in_time(const TruthSequence& truth,
   const TruthEncounter* encounter = truth.encounter(score.object);
   if (!manoeuvre_s || encounter == nullptr || !encounter->has_volume) return InTime::kUnknown;
   if (!encounter->violation_s) return InTime::kNoViolation;
+  const double begin_s = truth.frames.front().time_s;
   const double latest_s = *encounter->violation_s - *manoeuvre_s;
-  if (latest_s < truth.frames.front().time_s) return InTime::kImpossible;
+  if (*encounter->violation_s <= begin_s || latest_s < begin_s) return InTime::kImpossible;
   return score.declaration && score.declaration->time_s <= latest_s ? InTime::kYes : InTime::kNo;
 }
 

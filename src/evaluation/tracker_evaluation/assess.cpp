@@ -113,8 +113,10 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
           : fmt::format(
                 "{} runs were broken off (logs/{}.log says how)", broken.size(), broken.front());
   if (missing == truths.size())
-    throw Error("holds no result for any sequence of the data set; expected SEQUENCE.txt" +
-                    (!unknown.empty()  ? " (found one for '" + unknown.front() + "')"
+    throw Error("holds no result for any aircraft of the data set; expected " +
+                    truths.front().clip.name + ".txt" +
+                    (!unknown.empty() ? " (found one for '" + unknown.front() +
+                                            "'; tracks of several aircraft take --detections)"
                      : !broken.empty() ? "; " + broken_off
                                        : ""),
                 {folder.string()});
@@ -125,7 +127,7 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
                                broken_off));
   if (!unknown.empty())
     airtruth::warn(options.warn,
-                   fmt::format("{}: {} results are for no sequence of the data set (the first: {})",
+                   fmt::format("{}: {} results are for no aircraft of the data set (the first: {})",
                                folder.string(),
                                unknown.size(),
                                unknown.front()));
@@ -141,7 +143,7 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
                    fmt::format("{} ({} of these results fit both)", doubts.front(), doubts.size()));
   if (missing > 0)
     airtruth::warn(options.warn,
-                   fmt::format("{}: has results for {} of {} sequences; its score is of those",
+                   fmt::format("{}: has results for {} of {} aircraft; its score is of those",
                                folder.string(),
                                truths.size() - missing,
                                truths.size()));

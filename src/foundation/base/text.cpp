@@ -2,6 +2,7 @@
 #include "foundation/base/text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -61,6 +62,15 @@ std::string shell_word(std::string_view text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);
   return result + "'";
+}
+
+std::string pasted(std::string_view file) {
+  const std::string name = (file.starts_with('-') ? "./" : "") + std::string(file);
+  const bool is_plain = std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("._-/").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  return is_plain ? name : shell_word(name);
 }
 
 double finite_number(const std::string& cell, const Where& where) {

@@ -80,6 +80,9 @@ std::string toml_string(std::string_view text);
 
 // The text as one word of a shell command, in single quotes.
 std::string shell_word(std::string_view text);
+// The name of a file as it can be pasted into a shell: as it is where that is one word. One that
+// begins with a dash would be an option.
+std::string pasted(std::string_view file);
 
 // The whole text as a number; empty where it is none, or one that the type does not hold.
 //

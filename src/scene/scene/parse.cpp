@@ -121,6 +121,11 @@ CameraFile parse_camera_file(std::string_view text, const fs::path& file) {
   if (!camera.model.automatic.empty())
     throw Error(camera.model.automatic.front() + " is \"auto\"; expected a value in a camera file",
                 {file.string()});
+  if (camera.model.angle_deg || camera.model.gamma)
+    throw Error(std::string("[") +
+                    (camera.model.angle_deg ? "shutter] angle_deg is" : "sensor] gamma is") +
+                    " not read from a camera file; expected it in the scene",
+                {file.string()});
   const TableReader light = root.table("light", {"sun_azimuth_deg", "sun_elevation_deg"});
   camera.sun_azimuth_deg = light.number("sun_azimuth_deg", kTurn);
   camera.sun_elevation_deg = light.number("sun_elevation_deg", kPitch);

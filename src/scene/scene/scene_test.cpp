@@ -8,6 +8,7 @@
 #include <string>
 #include <variant>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
@@ -326,8 +327,11 @@ TEST(CameraFile, IsReadStrictly) {
   EXPECT_EQ(test_support::error_of([] { parse_camera_file("\n[clip]\nwidth = 9\n", "c.toml"); }),
             "c.toml:2:1: [clip] has no width and height; expected a file that airtruth calibrate "
             "wrote");
-  EXPECT_THROW(parse_camera_file("[clip]\nwidth = 1\nheight = 1\n[optics]\nspread = 1\n", "c.toml"),
-               Error);
+  const std::string clip = "[clip]\nwidth = 1\nheight = 1\n";
+  EXPECT_THROW(parse_camera_file(clip + "[optics]\nspread = 1\n", "c.toml"), Error);
+  for (const char* key : {"[shutter]\nangle_deg = 72\n", "[sensor]\ngamma = 2\n"})
+    EXPECT_THAT(test_support::error_of([&] { parse_camera_file(clip + key, "c.toml"); }),
+                testing::HasSubstr("is not read from a camera file; expected it in the scene"));
 }
 
 }  // namespace

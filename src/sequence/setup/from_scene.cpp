@@ -78,9 +78,11 @@ flight_log::FlightLog log_in_video(const std::filesystem::path& path) {
 double offset_of(const scene::Camera& camera, const flight_log::FlightLog& log) {
   if (camera.log_offset_s) return *camera.log_offset_s;
   if (log.is_on_video_clock) return camera.clip_start_s;
-  throw Error(fmt::format("the log ({}) has a clock of its own; expected log_offset_s, which "
-                          "'airtruth log align' finds",
-                          flight_log::name(log.format)),
+  throw Error(fmt::format("the log ({}) has a clock of its own; expected log_offset_s, {}",
+                          flight_log::name(log.format),
+                          log.attitudes.empty() && log.rates.empty()
+                              ? "its time at the first frame that the scene uses"
+                              : "which 'airtruth log align' finds"),
               camera.where);
 }
 

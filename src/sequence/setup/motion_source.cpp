@@ -73,11 +73,11 @@ void warn_of(const ClipMotion& found, bool has_gyro, const Warn& warn) {
   const auto away =
       std::ranges::count(found.frames, motion::State::kTurnedAway, &motion::FrameMotion::state);
   if (away > 0)
-    warn(
-        fmt::format("in {} frames the camera has turned so far from the first that no homography "
-                    "holds both (turned_away); the reference smoothed and the model rotation have "
-                    "no such limit",
-                    away));
+    warn(fmt::format(
+        "in {} frames the camera has turned or flown so far from the first that no homography "
+        "holds both (turned_away); the reference smoothed and the model rotation have "
+        "no such limit",
+        away));
 }
 
 }  // namespace
