@@ -122,14 +122,12 @@ Mtl read_mtl(std::string mtl) {
 class AssimpFiles : public Assimp::IOSystem {
  public:
   explicit AssimpFiles(wrapper::ModelFiles& files) : files_(files) {}
-  bool Exists(const char* path) const override {
-    return files_.kind(plain_path(path)) == wrapper::ModelFiles::Kind::kFile;
-  }
+  bool Exists(const char* path) const override { return is_file(named(path)); }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
     if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
-    const fs::path file = plain_path(path);
-    if (!Exists(path)) {
+    const fs::path file = named(path);
+    if (!is_file(file)) {
       missing_.insert(file.string());
       return nullptr;
     }
@@ -147,6 +145,16 @@ class AssimpFiles : public Assimp::IOSystem {
   bool moves_pictures_of_obj() const { return moves_pictures_; }
 
  private:
+  bool is_file(const fs::path& file) const {
+    return files_.kind(file) == wrapper::ModelFiles::Kind::kFile;
+  }
+  // A file, also where a URI spells its name with %XX.
+  fs::path named(const char* path) const {
+    const fs::path file = plain_path(path);
+    const auto decoded = percent_decoded(file.native());
+    return !is_file(file) && decoded && is_file(*decoded) ? fs::path(*decoded) : file;
+  }
+
   wrapper::ModelFiles& files_;
   std::set<std::string> missing_;
   bool moves_pictures_ = false;

@@ -213,6 +213,28 @@ TEST_F(Formats, WhatOfAGltfIsNotReadIsSaid) {
       testing::HasSubstr("EXT_mesh_gpu_instancing of glTF is not read"));
 }
 
+// Exporters write blanks of a URI as %20 (glTF 2.0, section 2.8).
+TEST_F(Formats, AUriOfAGltfNamesItsFile) {
+  const float points[] = {0, 0, 0, 3, 0, 0, 0, 2, 0, 0, 0, 1};
+  const std::uint16_t indices[] = {0, 1, 2, 0, 3, 1};
+  write_file(folder_ / "my data.bin",
+             std::string(reinterpret_cast<const char*>(points), sizeof(points)) +
+                 std::string(reinterpret_cast<const char*>(indices), sizeof(indices)));
+  write_file(folder_ / "my picture.tga",
+             std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\30\0", 18) + "\xff\xff\xff");
+  std::string text = gltf_of(R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0}})");
+  const auto name = [&](const std::string& data, const std::string& file) {
+    const std::size_t begin = text.find(data);
+    text.replace(begin, text.find('"', begin) - begin, file);
+  };
+  name("data:application", "my%20data.bin");
+  name("data:image", "my%20picture.tga");
+  const fleet::Aircraft loaded = load("a.gltf", text);
+  EXPECT_EQ(loaded.mesh.triangle_count(), 2u);
+  EXPECT_NE(loaded.mesh.texture_of(loaded.mesh.materials.at(0)), nullptr);
+  EXPECT_EQ(warnings_, "");
+}
+
 // glTF 2.0, section 3.9.4: alpha is opacity in the mode BLEND alone.
 TEST_F(Formats, TheAlphaModeOfAGltfSaysWhatAlphaIs) {
   struct Case {

@@ -154,7 +154,9 @@ fs::path find_texture(ModelFiles& files,
     for (const fs::path& candidate :
          {folder / clean, folder / file, folder.parent_path() / "materials" / "textures" / file})
       if (files.kind(candidate) == ModelFiles::Kind::kFile) return candidate.lexically_normal();
-  return {};
+  // As a URI spells it.
+  const auto decoded = percent_decoded(clean);
+  return decoded && *decoded != clean ? find_texture(files, *decoded, folders) : fs::path();
 }
 
 }  // namespace airtruth::wrapper

@@ -73,6 +73,24 @@ std::string pasted(std::string_view file) {
   return is_plain ? name : shell_word(name);
 }
 
+std::optional<std::string> percent_decoded(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      result += text[i];
+      continue;
+    }
+    unsigned code = 0;
+    if (i + 2 >= text.size()) return std::nullopt;
+    const char* end = text.data() + i + 3;
+    const auto [at, fault] = std::from_chars(text.data() + i + 1, end, code, 16);
+    if (fault != std::errc() || at != end) return std::nullopt;
+    result += static_cast<char>(code);
+    i += 2;
+  }
+  return result;
+}
+
 double finite_number(const std::string& cell, const Where& where) {
   const auto value = number_from_text<double>(cell);
   if (!value || !std::isfinite(*value))

@@ -84,6 +84,9 @@ std::string shell_word(std::string_view text);
 // begins with a dash would be an option.
 std::string pasted(std::string_view file);
 
+// The text with the bytes that its %XX stand for (RFC 3986, 2.1); empty where a % begins none.
+std::optional<std::string> percent_decoded(std::string_view text);
+
 // The whole text as a number; empty where it is none, or one that the type does not hold.
 //
 //   number_from_text<int>("12") == 12; "12 ", "+12" and "" are none

@@ -260,7 +260,7 @@ LensWords lens_for(const fs::path& video,
   const lens::ImageSize size{info.width, info.height};
   if (options.lens)
     return {lens::read_calibration(*options.lens, size, options.warn),
-            fmt::format("[lens]\nfile = {}\n", in_quotes(fs::absolute(*options.lens))),
+            fmt::format("[lens]\nfile = {}\n", as_written(*options.lens, options)),
             "the stated calibration" + note_in(*options.lens)};
   if (auto found = lens_from_files(video, size, info.sample_aspect.value())) return *found;
   return estimated_lens(video, options);

@@ -252,6 +252,10 @@ TEST(NewScene, TheEstimatesIntervalIsInTheScene) {
   EXPECT_THAT(scene_text(folder / "flight.mp4", stated),
               testing::HasSubstr("# the stated calibration, estimated by airtruth lens estimate: 9 "
                                  "to 10 px at 95 %; not certain."));
+  // A folder can be moved with all that is in it.
+  stated.folder = folder;
+  EXPECT_THAT(scene_text(folder / "flight.mp4", stated),
+              testing::HasSubstr("[lens]\nfile = \"lens.yml\"\n"));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "studio/messages/request.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -98,21 +97,9 @@ std::vector<std::string> keys_of(Act act) {
 constexpr std::size_t kMostTargetBytes = 2048;
 
 std::optional<std::string> unescaped(std::string_view text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '%') {
-      result += text[i] == '+' ? ' ' : text[i];
-      continue;
-    }
-    unsigned code = 0;
-    if (i + 2 >= text.size()) return std::nullopt;
-    const char* end = text.data() + i + 3;
-    const auto [at, fault] = std::from_chars(text.data() + i + 1, end, code, 16);
-    if (fault != std::errc() || at != end) return std::nullopt;
-    result += static_cast<char>(code);
-    i += 2;
-  }
-  return result;
+  std::string with_blanks(text);
+  std::ranges::replace(with_blanks, '+', ' ');
+  return percent_decoded(with_blanks);
 }
 
 }  // namespace
