@@ -6,6 +6,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::wrapper {
 namespace {
