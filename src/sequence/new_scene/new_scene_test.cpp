@@ -253,7 +253,7 @@ TEST(NewScene, TheEstimatesIntervalIsInTheScene) {
               testing::HasSubstr("# the stated calibration, estimated by airtruth lens estimate: 9 "
                                  "to 10 px at 95 %; not certain."));
   // A folder can be moved with all that is in it.
-  stated.folder = folder;
+  stated.folder = folder.path();
   EXPECT_THAT(scene_text(folder / "flight.mp4", stated),
               testing::HasSubstr("[lens]\nfile = \"lens.yml\"\n"));
 }
