@@ -370,7 +370,7 @@ def main():
                 ("s0.txt", "1,2,3,4\n" * (len(truth) + 1), f"has {len(truth) + 1} lines"),
                 ("s0.txt", "1,2,3\n" * len(truth), ":1: has 3 numbers"),
                 ("s0.txt", "1,2,x,4\n" * len(truth), ":1:5: 'x' is not a number"),
-                ("other.txt", "1,2,3,4\n", "holds no result for any sequence"),
+                ("other.txt", "1,2,3,4\n", "holds no result for any aircraft"),
                 ("s0.txt", "1,2,3,4\n" * len(truth), "s0_time.txt: has 1 lines")):
             bad = os.path.join(root, "bad")
             os.makedirs(bad, exist_ok=True)

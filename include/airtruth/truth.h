@@ -74,7 +74,8 @@ struct EncounterTruth {
 // The truth of one intruder in one frame. The optional fields are all empty in the state kEnded.
 struct IntruderTruth {
   std::string id;
-  // Name in the catalogue of aircraft, file name of the model, or the class of a distractor.
+  // Name in the catalogue of aircraft, path of the model from the scene's folder, or the class of a
+  // distractor (docs/formats/truth.md).
   std::string aircraft;
   IntruderState state = IntruderState::kEnded;
   std::optional<std::array<double, 3>> position_ned_m;
@@ -93,7 +94,8 @@ struct IntruderTruth {
   std::optional<double> nominal_elevation_deg;
   // Empty where the intruder is not in the world.
   std::optional<EncounterTruth> encounter;
-  // Box of the projected geometry, not clipped by the frame.
+  // Box of the projected geometry, of one that reaches behind the camera with the covered box; not
+  // clipped by the frame.
   std::optional<Box> exact_box_px;
   // Bounds of the whole pixels that the intruder covers with an alpha of 0.08 or more: the box for
   // training and scoring.

@@ -336,7 +336,7 @@ Source source_of_path(const fs::path& file) {
 
 Source source_of_entry(const Entry& entry) {
   const fs::path root = data_root_of(entry.catalogue_folder);
-  const fs::path file = fs::absolute(entry.file).lexically_normal();
+  const fs::path file = normal_path(fs::absolute(entry.file));
   return source_of(file, {root, {}, file.lexically_relative(root)});
 }
 

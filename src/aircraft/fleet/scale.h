@@ -55,7 +55,8 @@ std::string size_words(const model::Extents& loaded, double scale, const Publish
 // the sources.
 std::string_view size_table();
 
-// The rows of an embedded table, a line each, without its heading.
+// The rows of an embedded table, a line each, without its heading and without lines that hold
+// commas alone.
 std::vector<std::string> rows_of(std::string_view table);
 
 }  // namespace airtruth::fleet

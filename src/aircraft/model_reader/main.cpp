@@ -152,7 +152,8 @@ class AssimpFiles : public Assimp::IOSystem {
   fs::path named(const char* path) const {
     const fs::path file = plain_path(path);
     const auto decoded = percent_decoded(file.native());
-    return !is_file(file) && decoded && is_file(*decoded) ? fs::path(*decoded) : file;
+    if (!decoded || *decoded == file.native() || is_file(file) || !is_file(*decoded)) return file;
+    return *decoded;
   }
 
   wrapper::ModelFiles& files_;

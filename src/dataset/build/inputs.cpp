@@ -55,7 +55,9 @@ catalogue::BackgroundFiles fly(const catalogue::Background& background,
   }
   fs::create_directories(folder.backgrounds());
   if (!lens.empty()) write_file(kept_lens, lens);
-  const synthetic::Flight flight(flight_over(background, wanted));
+  // A stream, which no plan has checked, comes here first.
+  const synthetic::Flight flight = setup::at_place(
+      background.where, [&] { return synthetic::Flight(flight_over(background, wanted)); });
   write_file(stem.string() + ".csv", synthetic::csv_from_flight(flight));
   video::write_still(*files.mask, insertion::picture_of(flight.own_aircraft()));
   const auto progress = [&](std::int64_t done, std::int64_t total) {

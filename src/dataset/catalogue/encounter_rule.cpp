@@ -432,16 +432,17 @@ DrawnIntruder seen_intruder(const EncounterRule& rule,
   return longest;
 }
 
-// The mean weight of an intruder in traffic that is uniform over both distances. A pair's product
-// is counted in it, so that pairs are as large a share of all weights as they are of the sequences.
+// The mean weight of an intruder of the rule, whose distances are drawn evenly: its speed alone
+// varies. A pair's product is counted in it, so that pairs are as large a share of all weights as
+// they are of the sequences.
 double mean_weight(const EncounterRule& rule, const track::Track& own, std::uint64_t number) {
   constexpr std::uint64_t kTracks = 32;  // their mean is within a tenth: chosen
-  const auto draw = sets::model_pairs(rule.tracks,
-                                      own,
-                                      {.cpa_time_s = std::floor(own.times_s.back() / 2)},
-                                      Seed(rule.seed).stream("mean weight", number)());
+  EncounterRule even = rule;
+  for (pairing::Distribution* one : {&even.geometry.hmd_m, &even.geometry.vmd_m})
+    *one = pairing::Distribution({one->low(), one->high()});
   double sum = 0;
-  for (std::uint64_t i = 0; i < kTracks; ++i) sum += draw(i).encounter.weight;
+  for (std::uint64_t i = 0; i < kTracks; ++i)
+    sum += from_model(even, own, 2 * kNextIntruder + number * kTracks + i).weight;
   return sum / kTracks;
 }
 

@@ -96,7 +96,8 @@ TEST_F(EncounterModel, AStatedGeometryPassesWithinATenthOfAMetre) {
 
 // A weight is a speed, and a product of two would be 60 times a single one's.
 TEST_F(EncounterModel, PairsAreTheShareOfTheWeightsThatTheyAreOfTheSequences) {
-  const Catalogue catalogue = with(std::string(kBayes) + "count = 120\ntwo_intruders = 0.5\n");
+  const Catalogue catalogue =
+      with(std::string(kBayes) + "count = 120\ntwo_intruders = 0.5\nhmd_m = [0, 500]\n");
   double single = 0, pairs = 0;
   for (std::int64_t i = 0; i < 120; ++i) {
     const Item item = first_drawn(catalogue, i);

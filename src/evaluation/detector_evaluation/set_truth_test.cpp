@@ -265,7 +265,10 @@ TEST(HoldsDetections, WhereTheSecondCellIsTheIdOfNoTrack) {
     write_file(folder / "a.txt", line);
     return holds_detections(folder.path());
   };
-  EXPECT_TRUE(holds("1,-1,5,5,9,9,0.5,-1,-1,-1\n"));
+  for (const char* line : {"1,-1,5,5,9,9,0.5,-1,-1,-1\n",
+                           "1 -1 5 5 9 9 0.5 -1 -1 -1\n",
+                           "1\t-1\t5\t5\t9\t9\t0.5\t-1\t-1\t-1\r\n"})
+    EXPECT_TRUE(holds(line)) << line;
   EXPECT_TRUE(holds("1, -1.0 ,5,5,9,9,0.5\n"));
   EXPECT_FALSE(holds("50,-12.5,60,-12.5,60,4,50,4\n"));
   EXPECT_FALSE(holds("50,-1.5,60,-1.5,60,4,50,4\n"));

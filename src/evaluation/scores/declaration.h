@@ -43,7 +43,7 @@ struct Declaration {
 enum class InTime {
   kUnknown,      // no volume was asked for, or nothing is known of it
   kNoViolation,  // the aircraft never violates the volume
-  kImpossible,   // the clip begins later than the manoeuvre would have to
+  kImpossible,   // the clip begins later than the manoeuvre would have to, or violated
   kYes,
   kNo,
 };

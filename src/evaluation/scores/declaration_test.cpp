@@ -118,6 +118,8 @@ TEST(Declaration, AnEncounterWithoutAViolationNeedsNoManoeuvre) {
   TruthSequence truth = encounter();
   truth.encounters[0].violation_s.reset();
   EXPECT_EQ(scored(nothing(), 20, {}, truth).in_time, InTime::kNoViolation);
+  truth.encounters[0].violation_s = truth.frames.front().time_s;
+  EXPECT_EQ(scored(nothing(), 0, {}, truth).in_time, InTime::kImpossible);
   truth.encounters[0].has_volume = false;
   EXPECT_EQ(scored(nothing(), 20, {}, truth).in_time, InTime::kUnknown);
 }

@@ -81,8 +81,8 @@ std::vector<std::string> of_other_content(const std::vector<TruthClip>& truths,
 }
 
 // Reads the results of a folder for each truth. Throws Error where there are none. Warns of results
-// for sequences that the set lacks, of those of other content, of runs that were broken off, and of
-// sequences without results.
+// for aircraft that the set lacks, of those of other content, of runs that were broken off, and of
+// aircraft without results.
 std::vector<results::TrackerResults> results_in(const fs::path& folder,
                                                 const std::vector<TruthClip>& truths,
                                                 const AssessOptions& options) {
@@ -114,7 +114,7 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
                 "{} runs were broken off (logs/{}.log says how)", broken.size(), broken.front());
   if (missing == truths.size())
     throw Error("holds no result for any aircraft of the data set; expected " +
-                    truths.front().clip.name + ".txt" +
+                    (truths.empty() ? "SEQUENCE" : truths.front().clip.name) + ".txt" +
                     (!unknown.empty() ? " (found one for '" + unknown.front() +
                                             "'; tracks of several aircraft take --detections)"
                      : !broken.empty() ? "; " + broken_off
@@ -271,7 +271,7 @@ void leave_out_others(const fs::path& folder,
     any = any || !results[i].empty();
   }
   if (!any)
-    throw Error("holds no result for any sequence for which --where holds", {folder.string()});
+    throw Error("holds no result for any aircraft for which --where holds", {folder.string()});
 }
 
 // Where a curve ends before the range over which its mean is taken.

@@ -148,17 +148,6 @@ annotation::Intruder mark_truth(const setup::World& world,
   return truth;
 }
 
-// The points that have a pixel do not bound a shape that reaches through the camera's plane: what
-// the picture shows of it, up to the border, belongs to the box, too.
-Box with_what_is_seen(const std::optional<Box>& of_points, const PixelBox& seen) {
-  BoxBounds bounds;
-  for (const Box& box : {of_points.value_or(as_box(seen)), as_box(seen)}) {
-    bounds.add({box.x, box.y});
-    bounds.add({box.right(), box.bottom()});
-  }
-  return *bounds.box();
-}
-
 std::vector<annotation::Intruder> intruders_of(const setup::World& world,
                                                const setup::Moment& moment,
                                                const Painted& painted) {
@@ -179,8 +168,12 @@ std::vector<annotation::Intruder> intruders_of(const setup::World& world,
       truth.exact_box_px = truth.state == annotation::State::kVisible ? moment.boxes[i].box
                                                                       : moment.boxes[i].whole();
       if (seen != nullptr) add_pixels(truth, i, layer, *seen);
-      if (truth.covered_box_px && moment.boxes[i].partly_unseen)
-        truth.exact_box_px = with_what_is_seen(moment.boxes[i].box, *truth.covered_box_px);
+      // The points that have a pixel do not bound a shape that reaches through the camera's plane:
+      // what the picture shows of it, up to the border, belongs to the box, too.
+      if (truth.covered_box_px && moment.boxes[i].partly_unseen) {
+        const Box covered = as_box(*truth.covered_box_px);
+        truth.exact_box_px = bounds(moment.boxes[i].box.value_or(covered), covered);
+      }
       // What lies wholly beyond the frame is not drawn.
       if (truth.exact_box_px && !moment.search[i]) truth.cut_by_frame = 1;
     }

@@ -329,7 +329,8 @@ void warn_of_motion(const Tally& tally, const scene::Background& background, con
   if (tally.frames_turned > 0)
     warn(to_warn,
          fmt::format(
-             "in {} of them the camera has turned so far from the first frame that no homography "
+             "in {} of them the camera has turned or flown so far from the first frame that no "
+             "homography "
              "holds "
              "both; expected [motion] reference = \"smoothed\", or model = \"rotation\" with the "
              "camera's lens",

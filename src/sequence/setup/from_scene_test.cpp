@@ -238,10 +238,14 @@ TEST_F(OwnLog, ASceneWithALogIsWrittenAndReadTheSame) {
 }
 
 TEST_F(OwnLog, WhatDoesNotFitIsAnErrorAtTheScenesLine) {
-  const fs::path log = csv("", "");
-  EXPECT_EQ(error_of(scene_of(log, "")),
+  EXPECT_EQ(error_of(scene_of(csv(",yaw_deg,pitch_deg,roll_deg", ",90,1,2"), "")),
             "s.toml:5:1: the log (CSV) has a clock of its own; expected log_offset_s, which "
             "'airtruth log align' finds");
+  const fs::path log = csv("", "");
+  EXPECT_EQ(
+      error_of(scene_of(log, "")),
+      "s.toml:5:1: the log (CSV) has a clock of its own; expected log_offset_s, its time at the "
+      "first frame that the scene uses");
   EXPECT_EQ(
       error_of(scene_of(log, "log_offset_s = 100\n")),
       "s.toml:5:1: the log's positions go from 0.00 to 30.00 s, and the clip begins at 100.000 "
