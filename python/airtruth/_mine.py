@@ -118,7 +118,7 @@ class HardNegatives:
                     **rate,
                     **background,
                     "name": f"{name}-{alarm.frame}",
-                    "video": os.path.abspath(self.video),
+                    "video": str(self.video.absolute()),
                     "first_frame": alarm.frame,
                     "frame_count": frame_count,
                     "weight": weight,

@@ -41,7 +41,7 @@ std::vector<fs::path> folders() {
   std::vector<fs::path> result;
   std::istringstream list(stated != nullptr && *stated != '\0' ? stated : kDebianAircraft);
   for (std::string folder; std::getline(list, folder, ':');)
-    if (!folder.empty() && fs::is_directory(folder)) result.emplace_back(folder);
+    if (!folder.empty() && fs::is_directory(folder)) result.push_back(normal_path(folder));
   return result;
 }
 
@@ -336,7 +336,7 @@ Source source_of_path(const fs::path& file) {
 
 Source source_of_entry(const Entry& entry) {
   const fs::path root = data_root_of(entry.catalogue_folder);
-  const fs::path file = normal_path(fs::absolute(entry.file));
+  const fs::path file = fs::absolute(entry.file).lexically_normal();
   return source_of(file, {root, {}, file.lexically_relative(root)});
 }
 

@@ -40,8 +40,8 @@ enum class State {
   kBridged,
   // The scene changed: nothing links the frame to the frames before it. Its motion is extrapolated.
   kCut,
-  // Homographies only: the camera has turned so far from the first frame that no plane map holds
-  // both pictures (ReachGuard). The motion is that of the last frame within reach.
+  // Homographies only: the camera has turned or flown so far from the first frame that no plane map
+  // holds both pictures (ReachGuard). The motion is that of the last frame within reach.
   kTurnedAway,
 };
 // The names of the states in motion.csv.

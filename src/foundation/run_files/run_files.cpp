@@ -91,16 +91,6 @@ class CommitLock {
   Descriptor file_;
 };
 
-}  // namespace
-
-void refuse_twice(const std::vector<fs::path>& inputs) {
-  for (std::size_t i = 0; i < inputs.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k)
-      if (is_same(inputs[i], inputs[k]))
-        throw Error("is given twice, first as " + inputs[k].string() + "; expected it once",
-                    {inputs[i].string()});
-}
-
 // A folder is moved in one step where there is none of its name, so that a run that is killed
 // leaves no part of it there.
 void move_all(const fs::path& from, const fs::path& to) {
@@ -117,6 +107,16 @@ void move_all(const fs::path& from, const fs::path& to) {
     fs::rename(each, place, failed);
     if (failed) throw Error("cannot create: " + failed.message(), {place.string()});
   }
+}
+
+}  // namespace
+
+void refuse_twice(const std::vector<fs::path>& inputs) {
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (is_same(inputs[i], inputs[k]))
+        throw Error("is given twice, first as " + inputs[k].string() + "; expected it once",
+                    {inputs[i].string()});
 }
 
 // A hidden folder of this run, locked as long as the run lives.
@@ -145,12 +145,10 @@ class RunFiles::Hidden {
   const fs::path& parent() const { return parent_; }
 
   // Every file, as it will be named.
-  std::vector<std::pair<fs::path, fs::path>> moves() const {
-    std::vector<std::pair<fs::path, fs::path>> all;
+  std::vector<fs::path> places() const {
+    std::vector<fs::path> all;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path_))
-      if (!entry.is_directory())
-        all.emplace_back(entry.path(), parent_ / entry.path().lexically_relative(path_));
-    std::sort(all.begin(), all.end());
+      if (!entry.is_directory()) all.push_back(parent_ / entry.path().lexically_relative(path_));
     return all;
   }
 
@@ -277,7 +275,7 @@ void RunFiles::write(const fs::path& output,
 
 void RunFiles::commit() {
   for (const auto& [folder, hidden] : hidden_)
-    for (const auto& [from, to] : hidden->moves()) refuse_input(to, inputs_);
+    for (const fs::path& place : hidden->places()) refuse_input(place, inputs_);
   // In the order of their names, as every other run takes them.
   std::vector<std::unique_ptr<CommitLock>> locks;
   for (const auto& [folder, hidden] : hidden_)

@@ -69,8 +69,8 @@ void check_size(const StreamInfo& info, Chroma chroma, Format format, const Wher
     return;
   throw Error("H.264 cannot hold " + std::to_string(info.width) + "x" +
                   std::to_string(info.height) +
-                  " with halved chroma (an odd size); expected mkv, or of a scene's output.video "
-                  "mkv, avi or png",
+                  " with halved chroma (an odd size); expected mkv or avi, or of a scene's "
+                  "output.video png",
               where);
 }
 
@@ -287,9 +287,8 @@ Colour stored_colour(const StreamInfo& info, Format format, const Where& where) 
     if (stored.chroma == Chroma::kNone) stored.chroma = Chroma::k420;
   }
   if (stored.chroma == Chroma::k440)
-    throw Error(
-        "mp4 and avi cannot hold 4:4:0; expected mkv, or of a scene's output.video mkv or png",
-        where);
+    throw Error("mp4 and avi cannot hold 4:4:0; expected mkv, or of a scene's output.video png",
+                where);
   check_size(info, stored.chroma, format, where);
   return stored;
 }

@@ -160,12 +160,12 @@ std::string in_quotes(const fs::path& path) {
 
 // A file as the scene names it: relative to the scene's folder where that is stated.
 std::string as_written(const fs::path& file, const NewSceneOptions& options) {
-  const fs::path whole = normal_path(fs::absolute(file));
+  const fs::path whole = video::whole_path(file);
   if (!options.folder) return in_quotes(whole);
-  const fs::path folder = normal_path(fs::absolute(*options.folder));
+  const fs::path folder = video::whole_path(*options.folder);
   const fs::path relative = whole.lexically_proximate(folder);
   // A folder that is a link has another one above it.
-  return in_quotes(normal_path(folder / relative) == whole ? relative : whole);
+  return in_quotes(video::whole_path(folder / relative) == whole ? relative : whole);
 }
 
 LensWords in_words(const lens::Lens& lens, const std::string& origin) {
@@ -323,8 +323,8 @@ std::vector<motion::FrameMotion> motion_in(const fs::path& video,
 Part part_of(const fs::path& video,
              const video::StreamInfo& info,
              const lens::Lens& lens,
-             const NewSceneOptions& options) {
-  Part part{.frames = info.frame_count_estimate, .motion = motion_in(video, lens, options)};
+             std::vector<motion::FrameMotion> motion) {
+  Part part{.frames = info.frame_count_estimate, .motion = std::move(motion)};
   const double rate_hz = info.frame_rate.value();
   const auto wanted = static_cast<std::size_t>(std::max(1.0, kEncounterS * rate_hz));
   const double turn_rad = kSteadyShare * radians(lens.horizontal_fov_deg());
@@ -420,14 +420,21 @@ std::string background_words(const std::string& video,
 
 video::StreamInfo info_of(const fs::path& video, const NewSceneOptions& options) {
   video::Reader reader(video, {.picture_rate_hz = options.picture_rate_hz}, options.warn);
-  video::StreamInfo info = reader.info();
-  video::expect_rate(video, info, options.picture_rate_hz);
-  // Of a container that states no number the time stamps are counted: its length may be that of the
-  // sound.
-  if (!info.is_frame_count_stated && reader.next())
-    if (const auto times_s = reader.times_s(video::kAllFrames); !times_s.empty())
-      info.frame_count_estimate = std::ssize(times_s);
-  return info;
+  video::expect_rate(video, reader.info(), options.picture_rate_hz);
+  return reader.info();
+}
+
+// All frames of a clip whose motion ends before kMaxMotionFrames are decoded by then. Of a longer
+// one whose container states no number the time stamps are counted: its length may be the sound's.
+std::int64_t frames_of(const fs::path& video,
+                       const video::StreamInfo& info,
+                       const std::vector<motion::FrameMotion>& motion,
+                       const NewSceneOptions& options) {
+  if (std::ssize(motion) < kMaxMotionFrames) return std::ssize(motion);
+  if (info.is_frame_count_stated) return info.frame_count_estimate;
+  video::Reader reader(video, {.picture_rate_hz = options.picture_rate_hz});
+  const auto count = reader.next() ? std::ssize(reader.times_s(video::kAllFrames)) : 0;
+  return count > 0 ? count : info.frame_count_estimate;
 }
 
 // The known cameras whose clips are of this size, each as a line to uncomment; none where the
@@ -531,9 +538,11 @@ std::string first_encounter(const lens::Lens& lens,
 
 std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
   const std::string background = as_written(video, options);
-  const video::StreamInfo info = info_of(video, options);
+  video::StreamInfo info = info_of(video, options);
   const LensWords lens = lens_for(video, info, options);
-  const Part part = part_of(video, info, lens.lens, options);
+  std::vector<motion::FrameMotion> motion = motion_in(video, lens.lens, options);
+  info.frame_count_estimate = frames_of(video, info, motion, options);
+  const Part part = part_of(video, info, lens.lens, std::move(motion));
   const CameraWords camera = camera_for(video, part, options);
   const double rate_hz = info.frame_rate.value();
   const auto seconds_of = [&](std::int64_t frames) {

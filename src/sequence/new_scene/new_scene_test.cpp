@@ -256,6 +256,12 @@ TEST(NewScene, TheEstimatesIntervalIsInTheScene) {
   stated.folder = folder.path();
   EXPECT_THAT(scene_text(folder / "flight.mp4", stated),
               testing::HasSubstr("[lens]\nfile = \"lens.yml\"\n"));
+  // A relative path of a linked folder leads elsewhere.
+  const test_support::TemporaryFolder elsewhere;
+  fs::create_directory_symlink(elsewhere.path(), folder / "scenes");
+  stated.folder = folder / "scenes";
+  EXPECT_THAT(scene_text(folder / "flight.mp4", stated),
+              testing::HasSubstr("video = \"" + (folder / "flight.mp4").string() + "\"\n"));
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ struct NamedInterval {
 struct EncounterRecord {
   std::string id;
   // From the first frame to the lookahead after the last one; empty for an intruder that is not in
-  // the world then, and for one that still comes nearer when a path, or that time, ends.
+  // the world then, for one that still comes nearer when a path, or that time, ends, and for one
+  // that keeps its distance (passage::Approach::is_kept).
   std::optional<passage::Approach> closest;
   // Of the states where they are nearest in that time.
   std::optional<passage::Meeting> meeting;

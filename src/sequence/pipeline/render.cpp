@@ -330,9 +330,8 @@ void warn_of_motion(const Tally& tally, const scene::Background& background, con
     warn(to_warn,
          fmt::format(
              "in {} of them the camera has turned or flown so far from the first frame that no "
-             "homography "
-             "holds "
-             "both; expected [motion] reference = \"smoothed\", or model = \"rotation\" with the "
+             "homography holds both; expected [motion] reference = \"smoothed\", or model = "
+             "\"rotation\" with the "
              "camera's lens",
              tally.frames_turned));
 }

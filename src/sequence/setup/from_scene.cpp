@@ -18,6 +18,7 @@
 #include "picture/video/metadata.h"
 #include "picture/video/reader.h"
 #include "scene/flight_log/local_path.h"
+#include "scene/flight_log/log_rates.h"
 #include "scene/trajectory/heading.h"
 
 namespace airtruth::setup {
@@ -80,7 +81,7 @@ double offset_of(const scene::Camera& camera, const flight_log::FlightLog& log) 
   if (log.is_on_video_clock) return camera.clip_start_s;
   throw Error(fmt::format("the log ({}) has a clock of its own; expected log_offset_s, {}",
                           flight_log::name(log.format),
-                          log.attitudes.empty() && log.rates.empty()
+                          flight_log::gyro_samples(log).size() < 2
                               ? "its time at the first frame that the scene uses"
                               : "which 'airtruth log align' finds"),
               camera.where);

@@ -165,11 +165,16 @@ std::shared_ptr<const image::Mask> SharedInputs::mask_of(const std::filesystem::
 }
 
 std::string SharedInputs::sha256_of_file(const std::filesystem::path& file) {
-  const std::lock_guard lock(hashing_);
-  const FileStamp stamp = file_stamp(file);
-  const auto found = hashes_.find(file.string());
-  if (found != hashes_.end() && found->second.stamp == stamp) return found->second.sha256;
-  return (hashes_[file.string()] = {stamp, airtruth::sha256_of_file(file)}).sha256;
+  Hashed& one = [&]() -> Hashed& {
+    const std::lock_guard lock(mutex_);
+    return hashes_[file.string()];
+  }();
+  const std::lock_guard lock(one.reading);
+  if (const FileStamp stamp = file_stamp(file); one.sha256.empty() || one.stamp != stamp) {
+    one.sha256 = airtruth::sha256_of_file(file);
+    one.stamp = stamp;
+  }
+  return one.sha256;
 }
 
 std::size_t SharedInputs::kept() const {

@@ -71,6 +71,7 @@ class SharedInputs {
     std::uint64_t last_use = 0;
   };
   struct Hashed {
+    std::mutex reading;
     FileStamp stamp;
     std::string sha256;
   };
@@ -97,8 +98,7 @@ class SharedInputs {
   // By aircraft, airspeed in knots and height in feet.
   std::map<std::tuple<std::string, double, double>, std::string> configurations_;
   std::uint64_t uses_ = 0;
-  std::mutex hashing_;
-  std::map<std::string, Hashed> hashes_;  // guarded by hashing_
+  std::map<std::string, Hashed> hashes_;
   std::map<std::string, ReadMask> masks_;
 };
 

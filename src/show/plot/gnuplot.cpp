@@ -91,11 +91,11 @@ std::string tics_of(const char* axis, const Axis& a) {
   std::string places;
   for (std::size_t i = 0; i < a.names.size(); ++i)
     places += fmt::format("{}{} {}", i > 0 ? ", " : "", quoted_label(a.names[i]), i);
-  // The plot holds some 60 letters in a row.
-  constexpr std::size_t kMostLetters = 50;
+  // The plot holds some 60 letters in a row, gaps included.
+  constexpr std::size_t kMostLetters = 60;
   std::size_t longest = 0;
   for (const std::string& name : a.names) longest = std::max(longest, name.size());
-  const bool is_crowded = *axis == 'x' && a.names.size() * longest > kMostLetters;
+  const bool is_crowded = *axis == 'x' && a.names.size() * (longest + 1) > kMostLetters;
   return fmt::format("set {}tics {} ({})\n", axis, is_crowded ? "rotate" : "norotate", places);
 }
 
