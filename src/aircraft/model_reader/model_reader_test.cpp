@@ -105,13 +105,14 @@ TEST_F(Formats, AnObjMayBeginWithAByteOrderMark) {
   EXPECT_EQ(loaded.mesh.triangle_count(), 2U);
 }
 
-// A picture stands in for the colour that is not stated, and not on a grey.
+// A picture stands in for the colour that is not stated, and not on a grey. Colours are linear.
 TEST_F(Formats, AMaterialOfAPictureAloneIsWhiteBeneathIt) {
   write_file(folder_ / "t.tga",
              std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\30\0", 18) + "\xff\xff\xff");
   write_file(folder_ / "a.mtl",
              "newmtl stated\nmap_Kd t.tga\nKd 0.5 0.5 0.5\nnewmtl none\nmap_Kd\tt.tga\n");
-  for (const auto& [name, expected] : {std::pair("stated", 0.5f), {"none", 1.0f}}) {
+  for (const auto& [name, expected] :
+       {std::pair("stated", std::pow((0.5f + 0.055f) / 1.055f, 2.4f)), {"none", 1.0f}}) {
     const auto loaded = load("a.obj",
                              std::string("mtllib a.mtl\nusemtl ") + name +
                                  "\nv 0 0 0\nv 3 0 0\nv 0 2 0\nvt 0 0\nf 1/1 2/1 3/1\n");

@@ -24,6 +24,7 @@
 #include "foundation/base/text.h"
 #include "picture/video/metadata.h"
 #include "picture/video/numbered_frames.h"
+#include "picture/video/numbered_images.h"
 #include "picture/video/reader.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/level_camera.h"
