@@ -65,15 +65,15 @@ fs::path plain_path(const char* path) {
   return fs::path(text).lexically_normal();
 }
 
-// The text of an OBJ file as assimp (5.2.5) reads it rightly: without a byte order mark, blanks at
-// the beginning of a line, and with a 0 before each number of a vertex that begins with its dot.
+// The text of an OBJ file as assimp (5.2.5) reads it rightly: without a byte order mark and blanks
+// at the beginning of a line, and with a 0 before each number of a vertex that begins with its dot.
 // assimp drops such lines, so that all faces behind them name other vertices.
 std::string plain_obj(std::string_view obj) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
   std::string text;
   text.reserve(obj.size());
   char first = '\n';  // of the line; a line break before there is one
-  for (const char c : obj) {
+  for (const char c : without_mark(obj)) {
     if (first == '\n' && is_blank(c)) continue;
     if (c == '.' && first == 'v' && is_blank(text.back())) text += '0';
     const bool goes_on = text.ends_with('\\') || text.ends_with("\\\r");
@@ -132,7 +132,7 @@ class AssimpFiles : public Assimp::IOSystem {
       return nullptr;
     }
     std::string bytes = files_.read(file, model::kMaxModelBytes);
-    if (wrapper::ending_of(file) == ".obj") bytes = plain_obj(without_mark(bytes));
+    if (wrapper::ending_of(file) == ".obj") bytes = plain_obj(bytes);
     if (wrapper::ending_of(file) == ".mtl") {
       Mtl mtl = read_mtl(std::move(bytes));
       moves_pictures_ = moves_pictures_ || mtl.moves_pictures;

@@ -420,9 +420,12 @@ std::string background_words(const std::string& video,
 }
 
 video::StreamInfo info_of(const fs::path& video, const NewSceneOptions& options) {
-  video::Reader reader(video, {.picture_rate_hz = options.picture_rate_hz}, options.warn);
-  video::expect_rate(video, reader.info(), options.picture_rate_hz);
-  return reader.info();
+  const video::StreamInfo info =
+      video::Reader(
+          video, {.frame_count = 1, .picture_rate_hz = options.picture_rate_hz}, options.warn)
+          .info();
+  video::expect_rate(video, info, options.picture_rate_hz);
+  return info;
 }
 
 // All frames of a clip whose motion ends before kMaxMotionFrames are decoded by then. Of a longer

@@ -331,8 +331,7 @@ void warn_of_motion(const Tally& tally, const scene::Background& background, con
          fmt::format(
              "in {} of them the camera has turned or flown so far from the first frame that no "
              "homography holds both; expected [motion] reference = \"smoothed\", or model = "
-             "\"rotation\" with the "
-             "camera's lens",
+             "\"rotation\" with the camera's lens",
              tally.frames_turned));
 }
 

@@ -52,8 +52,8 @@ class SharedInputs {
   std::shared_ptr<const image::Mask> mask_of(const std::filesystem::path& file,
                                              const lens::ImageSize& size);
 
-  // As airtruth::sha256_of_file; a file is read again only where its stamp has changed. One file is
-  // read at a time, so that threads that ask for the same one read it once.
+  // As airtruth::sha256_of_file; a file is read again only where its stamp has changed. Threads
+  // that ask for the same file read it once.
   std::string sha256_of_file(const std::filesystem::path& file);
 
   // The number of aircraft that are kept now.
