@@ -1086,7 +1086,7 @@ class Commands(unittest.TestCase):
         airtruth.run("synth", out="told.mkv", width=64, height=64, frames=300, progress=lambda *now: told.append(now))
         self.assertEqual((told[-1], told == sorted(told)), ((300, 300), True))
         with self.assertRaises(ZeroDivisionError):
-            airtruth.run("synth", out="broken.mkv", frames=100000, progress=lambda *now: 1 / 0)
+            airtruth.run("synth", out="broken.mkv", width=64, height=64, frames=100000, progress=lambda *now: 1 / 0)
         self.assertFalse(os.path.exists("broken.mkv"))
 
     def test_messages_are_pythons(self):
@@ -1171,7 +1171,7 @@ class Processes(unittest.TestCase):
                     "while it streams": "list(stream)",
                     "while it measures motion": "for _ in range(9**9): airtruth.motion(source, cache=False)",
                     "while it calibrates": "for _ in range(9**9): airtruth.calibrate(source)",
-                    "while the program runs": "airtruth.run('synth', out='endless.mkv', frames=1000000)",
+                    "while the program runs": "airtruth.run('synth', out='endless.mkv', width=64, height=64, frames=1000000)",
                     "while it draws encounters": "airtruth.sample_encounters('light_aircraft.txt', count=1000000)",
                     "while it scores": "airtruth.evaluate.average_precision([source] * 20000, [source] * 20000, [range(30)] * 20000)"}
         boxes = [[k, k, 20, 10] for k in range(30)]

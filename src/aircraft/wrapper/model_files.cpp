@@ -128,7 +128,7 @@ std::string DiskFiles::read_below(const fs::path& path, std::size_t max_bytes) {
 }
 
 fs::path place_in_data_root(const fs::path& folder) {
-  const fs::path whole = normal_path(fs::absolute(folder.empty() ? "." : folder));
+  const fs::path whole = absolute_path(folder.empty() ? "." : folder);
   for (fs::path at = whole; at.has_relative_path(); at = at.parent_path())
     if (at.filename() == "Aircraft" && at.parent_path().filename() == "AI")
       return whole.lexically_relative(at.parent_path().parent_path());
@@ -137,7 +137,7 @@ fs::path place_in_data_root(const fs::path& folder) {
 
 fs::path folder_of_model(const fs::path& file) {
   const fs::path folder = file.parent_path();
-  const fs::path whole = normal_path(fs::absolute(folder.empty() ? "." : folder));
+  const fs::path whole = absolute_path(folder.empty() ? "." : folder);
   std::error_code ignored;
   const bool is_gazebo =
       whole.filename() == "meshes" && fs::is_directory(whole.parent_path() / "materials", ignored);

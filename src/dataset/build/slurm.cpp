@@ -144,7 +144,7 @@ Job submitted_job(const std::string& arguments) {
 Submitted submit(const catalogue::Catalogue& catalogue,
                  const fs::path& out,
                  const SlurmOptions& options) {
-  const fs::path root = normal_path(fs::absolute(out));
+  const fs::path root = absolute_path(out);
   require_utf8(root);
   const auto odd = [](char c) {
     return !std::isalnum(static_cast<unsigned char>(c)) &&

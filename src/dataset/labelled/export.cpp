@@ -64,7 +64,7 @@ std::string sha256_of_set(const fs::path& set, const LabelledSet& labelled) {
 
 // The options that determine every byte of an export.
 Json options_json(const fs::path& set, const LabelledSet& labelled, const ExportOptions& options) {
-  Json json = {{"set", normal_path(fs::absolute(set)).string()},
+  Json json = {{"set", absolute_path(set).string()},
                {"set_sha256", sha256_of_set(set, labelled)},
                {"format", exchange::name(options.format)},
                {"images", enum_name(*options.images)},

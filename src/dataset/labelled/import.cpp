@@ -240,7 +240,7 @@ void complete(std::vector<exchange::Clip>& clips,
     auto video = options.videos.find(clip.name);
     if (video == options.videos.end() && clips.size() == 1) video = options.videos.find("");
     if (video != options.videos.end()) clip.media = video->second;
-    if (!clip.media.empty()) clip.media = normal_path(fs::absolute(clip.media));
+    if (!clip.media.empty()) clip.media = absolute_path(clip.media);
     require_utf8(clip.media);
     if (video != options.videos.end()) join_given_pictures(clip, options.warn);
     if (has_pictures(clip)) {

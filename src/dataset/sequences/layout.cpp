@@ -90,8 +90,7 @@ fs::path SequenceFolders::folder(const std::string& name) const {
 SequenceFolders sequence_folders(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw Error("is no folder", {folder.string()});
   if (is_sequence(folder)) {
-    fs::path own = normal_path(fs::absolute(folder));
-    if (!own.has_filename()) own = own.parent_path();
+    const fs::path own = absolute_path(folder);
     return {own.parent_path(), {own.filename().string()}, {}};
   }
   const fs::path sequences = folder / "sequences";

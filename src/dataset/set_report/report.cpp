@@ -235,8 +235,7 @@ Gallery gallery_of(const labelled::LabelledSet& labelled,
 // The name on the card, or the name of the folder.
 std::string title_of(const Json& card, const fs::path& set) {
   if (card.contains("name")) return card.at("name").get<std::string>();
-  const fs::path named = normal_path(fs::absolute(set));
-  return named.has_filename() ? named.filename().string() : named.parent_path().filename().string();
+  return absolute_path(set).filename().string();
 }
 
 Json colours() {

@@ -69,10 +69,10 @@ std::string csv_rows(std::string_view columns, const std::vector<Json>& rows, co
 }
 
 std::string name_of_results(const fs::path& results) {
-  const fs::path plain = normal_path(fs::absolute(results));
+  const fs::path plain = absolute_path(results);
   require_utf8(plain);
   if (fs::is_regular_file(plain)) return plain.stem().string();
-  return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
+  return plain.filename().string();
 }
 
 void warn_of_other_content(const fs::path& results,

@@ -173,6 +173,8 @@ TEST_F(Files, ANormalPathNamesTheSameFile) {
   EXPECT_EQ(normal_path(folder_ / "user/scenes/./clip.mp4"), folder_ / "user/scenes/clip.mp4");
   EXPECT_EQ(normal_path(folder_ / "real/scenes/../../user/scenes"), folder_ / "user/scenes");
   EXPECT_EQ(normal_path("a/../b.mp4"), "b.mp4");
+  EXPECT_EQ(absolute_path("a/../set/"), fs::current_path() / "set");
+  EXPECT_EQ(absolute_path("/"), "/");
 }
 
 TEST_F(Files, AFolderThatHoldsOthersFilesIsRefused) {

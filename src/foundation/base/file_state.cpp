@@ -150,7 +150,7 @@ void check_output_file(const fs::path& path,
 }
 
 void check_output_folder(const fs::path& path) {
-  fs::path nearest = normal_path(fs::absolute(path));
+  fs::path nearest = absolute_path(path);
   while (!fs::exists(fs::symlink_status(nearest)) && nearest.has_relative_path())
     nearest = nearest.parent_path();
   if (!fs::is_directory(nearest))

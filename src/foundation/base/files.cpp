@@ -120,6 +120,11 @@ fs::path normal_path(const fs::path& path) {
   return failed || fs::weakly_canonical(fs::absolute(normal), failed) == meant ? normal : meant;
 }
 
+fs::path absolute_path(const fs::path& path) {
+  const fs::path whole = normal_path(fs::absolute(path));
+  return whole.has_filename() ? whole : whole.parent_path();
+}
+
 fs::path first_missing(fs::path folder) {
   fs::path missing;
   while (!folder.empty() && !fs::exists(folder)) {

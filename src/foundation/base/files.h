@@ -63,6 +63,9 @@ void remove_empty(fs::path folder, const fs::path& first);
 // The path without "." and "..": by its text where that names the same file, else with its links
 // followed, since "link/.." is the folder above the one that the link leads to.
 fs::path normal_path(const fs::path& path);
+// The same as an absolute path, without a slash at its end, so that its file name is that of a
+// folder, too.
+fs::path absolute_path(const fs::path& path);
 
 // The folders and files of a folder, sorted by name, without hidden ones; none where it is no
 // folder.

@@ -59,7 +59,7 @@ class VocWriter : public FolderWriter {
   std::string annotation(const Clip& clip, std::size_t i) const {
     pugi::xml_document document;
     pugi::xml_node top = document.append_child("annotation");
-    add_text(top, "folder", normal_path(fs::absolute(root_)).filename().string());
+    add_text(top, "folder", absolute_path(root_).filename().string());
     add_text(top, "filename", numbered_stem(clip, i) + options_.image_extension);
     pugi::xml_node source = top.append_child("source");
     add_text(source, "database", "airtruth");

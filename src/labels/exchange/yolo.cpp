@@ -56,7 +56,7 @@ class YoloWriter : public FolderWriter {
     };
     const std::string train = has("train") ? "train" : options_.parts.front();
     std::string text = "# Change `path` when the folder is moved.\npath: " +
-                       quoted(normal_path(fs::absolute(root_)).string()) + "\n";
+                       quoted(absolute_path(root_).string()) + "\n";
     text += "train: images/" + train + "\n";
     text += "val: images/" + (has("val") ? std::string("val") : train) + "\n";
     if (has("test")) text += "test: images/test\n";

@@ -155,13 +155,8 @@ std::optional<NumberedImages> numbered_images(const fs::path& path) {
   return of_pattern(path, number->first, number->second);
 }
 
-fs::path whole_path(const fs::path& video) {
-  const fs::path whole = normal_path(fs::absolute(video));
-  return whole.has_filename() ? whole : whole.parent_path();
-}
-
 std::string clip_name(const fs::path& video) {
-  fs::path named = whole_path(video);
+  fs::path named = absolute_path(video);
   std::error_code ignored;
   if (number_in_pattern(named.filename().string()) && !fs::exists(named, ignored))
     named = named.parent_path();

@@ -25,10 +25,6 @@ struct NumberedImages {
 // file, and for a line of a list that is no picture's path.
 std::optional<NumberedImages> numbered_images(const std::filesystem::path& path);
 
-// The absolute path of a video, a folder of pictures or a pattern of their names, without a slash
-// at its end.
-std::filesystem::path whole_path(const std::filesystem::path& video);
-
 // What is made of a video is named by this.
 //
 //   clip_name("pics.mp4") == clip_name("pics/") == clip_name("pics/%06d.png") == "pics"

@@ -18,12 +18,13 @@
 #include "dataset/sequences/layout.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
+#include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/names.h"
 #include "foundation/base/stopwatch.h"
 #include "foundation/json/settings_record.h"
 #include "foundation/lazy_library/lazy_library.h"
-#include "picture/video/numbered_images.h"
+#include "picture/video/reader.h"
 #include "runners/classical/classical.h"
 #include "runners/detector/detector.h"
 #include "runners/network/model_description.h"
@@ -389,7 +390,7 @@ class DetectorRun {
   }
 
   std::vector<DetectSummary> over(const fs::path& video) {
-    source_ = video::whole_path(video).string();
+    source_ = absolute_path(video).string();
     require_utf8(source_);
     const DetectionClip clip = clip_of(video);
     expect_mask(options_.mask.has_value());

@@ -19,6 +19,7 @@
 #include "evaluation/matching/boxes.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
+#include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/names.h"
 #include "foundation/base/stopwatch.h"
@@ -168,7 +169,7 @@ class TrackerRun {
 
   TrackSummary over(const fs::path& video, const Box& init, std::int64_t first_frame) {
     const std::string name = video::clip_name(video);
-    const fs::path source = video::whole_path(video);
+    const fs::path source = absolute_path(video);
     require_utf8(source);
     const fs::path file =
         results::trajectory_file(summary_.folder, results::Protocol::kOnePass, name, 0);

@@ -45,9 +45,7 @@ class Text {
   static std::string toml(bool value) { return value ? "true" : "false"; }
   static std::string toml(int value) { return fmt::format("{}", value); }
   static std::string toml(std::int64_t value) { return fmt::format("{}", value); }
-  static std::string toml(const fs::path& path) {
-    return toml(normal_path(fs::absolute(path)).string());
-  }
+  static std::string toml(const fs::path& path) { return toml(absolute_path(path).string()); }
   static std::string toml(const Vector3& v) {
     return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
   }
@@ -137,7 +135,7 @@ void add_realism(Text& text, const Realism& realism) {
 }
 
 std::string aircraft_text(const std::string& aircraft) {
-  return wrapper::is_model_file(aircraft) ? normal_path(fs::absolute(aircraft)).string() : aircraft;
+  return wrapper::is_model_file(aircraft) ? absolute_path(aircraft).string() : aircraft;
 }
 
 void add_encounter(Text& text, const Encounter& encounter, std::string_view table) {

@@ -24,7 +24,6 @@
 #include "foundation/base/text.h"
 #include "picture/video/metadata.h"
 #include "picture/video/numbered_frames.h"
-#include "picture/video/numbered_images.h"
 #include "picture/video/reader.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/level_camera.h"
@@ -161,12 +160,12 @@ std::string in_quotes(const fs::path& path) {
 
 // A file as the scene names it: relative to the scene's folder where that is stated.
 std::string as_written(const fs::path& file, const NewSceneOptions& options) {
-  const fs::path whole = video::whole_path(file);
+  const fs::path whole = absolute_path(file);
   if (!options.folder) return in_quotes(whole);
-  const fs::path folder = video::whole_path(*options.folder);
+  const fs::path folder = absolute_path(*options.folder);
   const fs::path relative = whole.lexically_proximate(folder);
   // A folder that is a link has another one above it.
-  return in_quotes(video::whole_path(folder / relative) == whole ? relative : whole);
+  return in_quotes(absolute_path(folder / relative) == whole ? relative : whole);
 }
 
 LensWords in_words(const lens::Lens& lens, const std::string& origin) {

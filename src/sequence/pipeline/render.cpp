@@ -196,7 +196,7 @@ nlohmann::ordered_json input_files(const scene::Scene& scene,
   nlohmann::ordered_json result = nlohmann::ordered_json::array();
   // Under the names that scene_toml has, wherever the run was called.
   const auto add_with = [&](const fs::path& file, const std::string& sha256) {
-    add_file(result, normal_path(fs::absolute(file)), sha256);
+    add_file(result, absolute_path(file), sha256);
   };
   const auto add = [&](const fs::path& file) { add_with(file, inputs.sha256_of_file(file)); };
   if (!video_sha256.empty()) add_with(scene.background.video, video_sha256);

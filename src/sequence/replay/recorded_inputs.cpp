@@ -30,7 +30,7 @@ std::optional<fs::path> find_recorded(const fs::path& name,
   const bool is_changed = is_another(name, sha256, inputs);
   if (!is_changed && fs::exists(name, none)) return name;
   // The sequence lies in sequences/NAME, or in a numbered folder: sequences/0001/NAME.
-  fs::path above = normal_path(fs::absolute(sequence / "sequence.json")).parent_path();
+  fs::path above = absolute_path(sequence / "sequence.json").parent_path();
   above = above.parent_path();
   for (int i = 0; i < 2; ++i) {
     above = above.parent_path();
