@@ -116,6 +116,13 @@ class OverASet(Case):
         self.assertTrue(os.path.exists(path("parts", "cmo", "detections.json")))
         self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "parts", "--min-score", "9"), "min_score", "give another --out")
 
+    def test_a_command_that_gave_no_results_may_be_mended(self):
+        detect = lambda command: run("detect", "set", "-d", "own=exec:" + command, "-o", "mended", "--only", "one")
+        self.assertIn("1 broken off", detect("false").stdout)
+        self.assertEqual(detect(EXAMPLE).returncode, 0)
+        self.assertTrue(read("mended", "own", "one.txt"))
+        self.assert_refused(detect("false"), "mended/own: holds results with detector")
+
     def test_coco_results_of_fewer_sequences_do_not_outlive_a_new_one(self):
         made("detect", "set", "-d", "cmo", "-o", "grown", "--only", "two")
         write("grown/cmo/detections.json", "[]")  # of a set of this one sequence

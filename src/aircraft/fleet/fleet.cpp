@@ -363,9 +363,18 @@ double scale_of(const std::string& name,
 // Longer than any aircraft: the airship Hindenburg had 245 m.
 constexpr double kLongest_m = 250;
 
-// Many models are in centimetres or millimetres, and most files do not state their unit.
+// Many models are in centimetres or millimetres, and most files do not state their unit; those of a
+// larger drawing may lie far from its origin, which is what a scene places.
 void warn_of_size(const std::string& name, const model::Mesh& mesh, const Warn& warn_to) {
   const model::Extents size = model::extents(mesh);
+  const double longest_m = std::max({size.length_m(), size.span_m(), size.height_m()});
+  const double from_origin_m = ((size.low_in_body + size.high_in_body) / 2).norm();
+  if (from_origin_m > longest_m)
+    warn(warn_to,
+         fmt::format("{}: its middle lies {:.4g} m from its origin, which is what a scene places; "
+                     "expected an origin within the aircraft",
+                     name,
+                     from_origin_m));
   if (std::max(size.length_m(), size.span_m()) <= kLongest_m) return;
   warn(warn_to,
        fmt::format("{}: is {:.0f} m long and {:.0f} m wide; where the file is in other units than "

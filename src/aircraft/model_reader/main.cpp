@@ -42,6 +42,8 @@ constexpr float kSmoothBelowDeg = 60;  // the crease angle where a file states n
 constexpr float kDefaultAlphaCutoff = 0.5f;  // of glTF 2.0, section 5.19 (alphaCutoff)
 constexpr int kMaxNodeDepth = 256;           // bounds the recursion over a hostile file
 constexpr std::array<float, 3> kBlack = {0, 0, 0};
+// Of formats without materials, in sRGB: that of an OBJ without them.
+constexpr std::array<float, 3> kGrey = {0.6f, 0.6f, 0.6f};
 constexpr std::size_t kNamedFiles = 5;  // missing files that a message names
 
 // The bytes of a file as assimp reads them, also where it asks for values of no size.
@@ -112,6 +114,9 @@ Mtl read_mtl(std::string mtl) {
           });
     }
     result.text += line + "\n";
+    // One number is that of red, green and blue.
+    if (key == "kd" && words.size() == 2)
+      result.text += "Kd " + words[1] + " " + words[1] + " " + words[1] + "\n";
   }
   end_material();
   return result;
@@ -273,6 +278,7 @@ class SceneReader {
     aiColor3D colour;
     if (material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS)
       batch.srgb.diffuse = colour_of(colour, is_linear);
+    if (ending_ == ".stl" || ending_ == ".ply") batch.srgb.diffuse = kGrey;
     if (material.Get(AI_MATKEY_COLOR_EMISSIVE, colour) == aiReturn_SUCCESS)
       batch.srgb.emission = colour_of(colour, is_linear);
     // A material that shines by itself alone is seen as paint of that colour.
@@ -329,7 +335,7 @@ class SceneReader {
       if (const aiTexture* inside = scene_.GetEmbeddedTexture(path.C_Str())) {
         batch.picture = picture_of(*inside, batch.sampling);
       } else {
-        batch.texture = path.C_Str();
+        batch.texture = std::string(trimmed(path.C_Str()));
       }
       return;
     }
@@ -421,12 +427,17 @@ void append_other_format(wrapper::Assembly& assembly, const wrapper::ModelFile& 
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   // Without normals a glTF is flat (glTF 2.0, section 3.7.2.1): its triangles keep their own.
   const bool is_gltf = ending == ".gltf" || ending == ".glb";
-  const unsigned smooth = is_gltf ? 0u : unsigned{aiProcess_GenSmoothNormals};
+  // So is a PLY: assimp's faces of one share their vertices, whose normals would be those of one
+  // face.
+  const unsigned smooth = is_gltf || ending == ".ply" ? 0u : unsigned{aiProcess_GenSmoothNormals};
+  // A 3DS states no normals; assimp's are smooth over every edge where it states no groups.
+  const unsigned without_normals = ending == ".3ds" ? unsigned{aiProcess_RemoveComponent} : 0u;
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
   if (is_gltf) warn_of_extensions(assembly, file.path);
-  const aiScene* scene =
-      importer.ReadFile(file.path.string(),
-                        smooth | aiProcess_ValidateDataStructure | aiProcess_Triangulate |
-                            aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+  const aiScene* scene = importer.ReadFile(
+      file.path.string(),
+      smooth | without_normals | aiProcess_ValidateDataStructure | aiProcess_Triangulate |
+          aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw Error("cannot be read as a 3D model: " + one_sentence(importer.GetErrorString()),
                 {shown});

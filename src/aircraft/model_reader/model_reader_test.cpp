@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -118,6 +119,58 @@ TEST_F(Formats, AMaterialOfAPictureAloneIsWhiteBeneathIt) {
                                  "\nv 0 0 0\nv 3 0 0\nv 0 2 0\nvt 0 0\nf 1/1 2/1 3/1\n");
     EXPECT_FLOAT_EQ(loaded.mesh.materials.at(0).diffuse[0], expected) << name;
   }
+}
+
+// Each vertex of a triangle has the triangle's normal.
+void expect_flat(const model::Mesh& mesh) {
+  for (const model::Triangle& triangle : mesh.parts.at(0).triangles) {
+    const auto at = [&](int corner) { return mesh.positions[triangle.vertex[corner]]; };
+    const Eigen::Vector3f normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+    for (const std::uint32_t vertex : triangle.vertex)
+      EXPECT_TRUE(mesh.normals[vertex].isApprox(normal)) << mesh.normals[vertex].transpose();
+  }
+}
+
+// A chunk of a 3DS file: its number, its length with both, and what it holds.
+std::string chunk(int number, const std::string& content) {
+  const auto length = static_cast<std::uint32_t>(6 + content.size());
+  std::string bytes = {static_cast<char>(number & 0xff), static_cast<char>(number >> 8)};
+  return bytes.append(reinterpret_cast<const char*>(&length), 4) + content;
+}
+
+template <typename... Numbers>
+std::string bytes_of(Numbers... numbers) {
+  std::string bytes;
+  (bytes.append(reinterpret_cast<const char*>(&numbers), sizeof(numbers)), ...);
+  return bytes;
+}
+
+// Two triangles that meet at a right angle, and share the vertices of that edge.
+TEST_F(Formats, ASharpEdgeIsNotSmoothedWhereNoNormalsAreStated) {
+  using U = std::uint16_t;
+  const std::string vertices =
+      bytes_of(U{4}, 0.f, 0.f, 0.f, 3.f, 0.f, 0.f, 0.f, 2.f, 0.f, 0.f, 0.f, 1.f);
+  const std::string faces = bytes_of(U{2}, U{0}, U{1}, U{2}, U{0}, U{0}, U{2}, U{3}, U{0});
+  const std::string mesh = chunk(0x4100, chunk(0x4110, vertices) + chunk(0x4120, faces));
+  const std::string object = chunk(0x4000, std::string("a\0", 2) + mesh);
+  expect_flat(load("a.3ds", chunk(0x4d4d, chunk(0x3d3d, object))).mesh);
+  expect_flat(load("a.obj", "v 0 0 0\nv 3 0 0\nv 0 2 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n").mesh);
+  expect_flat(load("a.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                   "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+                   "end_header\n0 0 0\n3 0 0\n0 2 0\n0 0 1\n3 0 1 2\n3 0 2 3\n")
+                  .mesh);
+}
+
+TEST_F(Formats, NamesHaveNoBlanksAroundThemAndOneNumberIsAGrey) {
+  write_file(folder_ / "t.tga",
+             std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\30\0", 18) + "\xff\xff\xff");
+  write_file(folder_ / "a.mtl", "newmtl m\nKd 1\nmap_Kd t.tga \t\n");
+  const auto loaded =
+      load("a.obj", "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 3 0 0\nv 0 2 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+  EXPECT_EQ(loaded.mesh.materials.at(0).diffuse, (std::array<float, 3>{1, 1, 1}));
+  EXPECT_EQ(loaded.mesh.textures.size(), 1u);
+  EXPECT_EQ(warnings_, "");
 }
 
 TEST_F(Formats, StlAndPlyAreRead) {
@@ -276,13 +329,14 @@ TEST_F(Formats, WhatIsWhollyTransparentIsRefused) {
       testing::HasSubstr("t.obj: is wholly transparent"));
 }
 
-TEST_F(Formats, ASizeThatNoAircraftHasIsSaid) {
+TEST_F(Formats, ASizeOrAPlaceThatNoAircraftHasIsSaid) {
   load("mm.obj", "v 0 0 0\nv 9700 0 0\nv 0 2840 0\nf 1 2 3\n");
   EXPECT_THAT(warnings_, testing::HasSubstr("mm.obj: is 9700 m long and 2840 m wide"));
   EXPECT_THAT(warnings_, testing::HasSubstr("model_scale"));
   warnings_.clear();
   load("far.obj", "v 5000 0 0\nv 5040 0 0\nv 5000 36 0\nf 1 2 3\n");
-  EXPECT_EQ(warnings_, "");
+  EXPECT_THAT(warnings_, testing::HasSubstr("far.obj: its middle lies 5020 m from its origin"));
+  EXPECT_THAT(warnings_, testing::Not(testing::HasSubstr("model_scale")));
 }
 
 TEST_F(Formats, FaultsAreOneLine) {

@@ -10,9 +10,10 @@ namespace airtruth {
 // A folder of results has a record, a JSON file, of the settings that decide its content, so that
 // only a run with the same settings goes on in it.
 //
-// Returns false where there is no such file. Throws Error where its folder holds others without it,
-// where the file is no record, and where it holds another value than `settings` for one of its
-// keys; further keys of the file do not matter.
+// Returns false where there is no such file, or one of other settings beside which there are no
+// results but logs. Throws Error where its folder holds others without it, where the file is no
+// record, and where it holds another value than `settings` for one of its keys; further keys of the
+// file do not matter.
 bool is_record_of(const std::filesystem::path& file, const nlohmann::ordered_json& settings);
 
 // Throws Error where the file, the record of one of the results in its folder, holds another value

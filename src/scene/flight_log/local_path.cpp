@@ -143,7 +143,8 @@ void require_flyable(const trajectory::Samples& samples, double offset_s) {
   }
 }
 
-// Adds positions at constant velocity before the first one and after the last one.
+// Adds positions before the first one and after the last one, at the velocity that the first two
+// and the last two tell for there; where there are more, their change of it goes on.
 void extend(trajectory::Samples& samples) {
   auto& times = samples.times_s;
   auto& positions = samples.positions_ned_m;
@@ -151,8 +152,13 @@ void extend(trajectory::Samples& samples) {
   const auto velocity = [&](std::size_t a, std::size_t b) -> Vector3 {
     return (positions[b] - positions[a]) / (times[b] - times[a]);
   };
-  const Vector3 before = positions[0] - kMaxExtensionS * velocity(0, 1);
-  const Vector3 behind = positions[n - 1] + kMaxExtensionS * velocity(n - 2, n - 1);
+  Vector3 first = velocity(0, 1), last = velocity(n - 2, n - 1);
+  if (n > 2) {
+    first = 2 * first - velocity(1, 2);
+    last = 2 * last - velocity(n - 3, n - 2);
+  }
+  const Vector3 before = positions[0] - kMaxExtensionS * first;
+  const Vector3 behind = positions[n - 1] + kMaxExtensionS * last;
   times.push_back(times.back() + kMaxExtensionS);
   positions.push_back(behind);
   times.insert(times.begin(), times.front() - kMaxExtensionS);

@@ -86,6 +86,28 @@ TEST(LocalPath, APathGoesOnForOneAndAHalfSecondsFromTheFirstAndTheLastPosition) 
   EXPECT_NEAR(path.end_s(), 63, 1e-9);
 }
 
+// A circle of 60 m at 12 m/s, whose log begins with the clip.
+TEST(LocalPath, ATurnBeginsWithTheLog) {
+  const Radii radii = radii_at(47);
+  FlightLog log;
+  for (int i = 0; i <= 600; ++i) {
+    const double angle = i / 30.0 * 12 / 60;
+    Fix& fix = log.fixes.emplace_back();
+    fix.time_s = i / 30.0;
+    fix.latitude_deg = 47 + degrees(60 * std::sin(angle) / (radii.meridian_m + 500));
+    fix.longitude_deg =
+        8 + degrees(60 * (1 - std::cos(angle)) / ((radii.normal_m + 500) * std::cos(radians(47))));
+    fix.altitude_m = 500;
+  }
+  const auto path = local_path(log, {0, {0, 0, 0}});
+  EXPECT_LT((path.at(0)->velocity_in_world_mps - Vector3(12, 0, 0)).norm(), 0.5);
+  const double after_s = 0.5, angle = after_s * 12 / 60;
+  EXPECT_LT((path.at(after_s)->velocity_in_world_mps -
+             Vector3(12 * std::cos(angle), 12 * std::sin(angle), 0))
+                .norm(),
+            0.1);
+}
+
 TEST(LocalPath, APositionOfOneMicrodegreeDoesNotShake) {
   const auto path = local_path(straight(12, 9, 0, 30, 1e-6), {20, {0, 0, 0}});
   for (double t = 0.5; t <= 9.5; t += 0.1) {

@@ -37,6 +37,8 @@ inline constexpr Limits kPinholeView{
 
 // Positions, times and speeds. The bound 1e9 is also that of path files (trajectory/path_file.cpp).
 inline constexpr Limits kPosition{"metres from -1e9 to 1e9", -1e9, 1e9};
+// Of a log's clock: seconds since 1970 fit.
+inline constexpr Limits kLogTime{"seconds from -1e11 to 1e11", -1e11, 1e11};
 inline constexpr Limits kTime{"seconds from -1e9 to 1e9", -1e9, 1e9};
 inline constexpr Limits kWeight{"a number from 1e-9 to 1e9", 1e-9, 1e9};
 inline constexpr Limits kFrameRate_hz{"frames a second from 0.001 to 1e6", 0.001, 1e6};

@@ -117,6 +117,8 @@ struct Camera {
   // the shake about it (`smoothed`), or none is measured. Otherwise it is that of the first frame,
   // from where the measured motion turns it.
   bool follows_attitude = false;
+  // True where it is followed and the measured shake added (`smoothed`).
+  bool is_shaken = false;
   Where where;
 };
 

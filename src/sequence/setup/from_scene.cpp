@@ -149,6 +149,13 @@ trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
   try {
     const trajectory::Path path = flight_log::local_path(log, placement);
     const bool has_attitudes = !log.attitudes.empty();
+    if (camera.is_shaken && has_attitudes)
+      airtruth::warn(
+          warn,
+          fmt::format("{}: its attitudes hold the camera's shake, and [motion] reference "
+                      "= \"smoothed\" adds the one that is measured; leave reference "
+                      "out, or state model = \"none\"",
+                      camera.log->string()));
     if (camera.follows_attitude && has_attitudes && !camera.attitude_yaw_pitch_roll_deg)
       return path;
     const HeadingDeg heading_deg = heading_along(path);

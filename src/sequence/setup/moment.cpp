@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 #include "sequence/setup/world.h"
@@ -195,9 +197,10 @@ std::optional<image::Spot> spot_of(const scene::LensMark& mark,
 Moment moment_at(const World& world, std::int64_t frame, double time_s, const Shake& shake) {
   const auto camera = world.camera.at(time_s);
   if (!camera)
-    throw Error("the camera's path ends at " + std::to_string(world.camera.end_s()) +
-                    " s, but the clip goes on at " + std::to_string(time_s) +
-                    " s; expected a path as long as the clip",
+    throw Error(fmt::format("the camera's path ends at {:.6g} s, but the clip goes on at {:.6g} s; "
+                            "expected a path as long as the clip",
+                            world.camera.end_s(),
+                            time_s),
                 world.camera_where);
   Moment moment;
   moment.frame = frame;

@@ -97,9 +97,9 @@ std::string SharedInputs::type_key(const scene::Intruder& intruder, const trajec
   }
   const model::LoadOptions options = load_options(intruder, path);
   std::string key = intruder.aircraft + '|' + configuration_of(intruder.aircraft, options);
-  if (options.catalogue_scale) key += '*' + std::to_string(*options.catalogue_scale);
+  if (options.catalogue_scale) key += fmt::format("*{}", *options.catalogue_scale);
   if (options.axes)
-    key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
+    key += fmt::format("|{}{}{}", options.axes->forward, options.axes->up, options.axes->scale);
   return key;
 }
 

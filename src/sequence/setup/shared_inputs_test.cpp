@@ -73,6 +73,17 @@ TEST_F(SharedInputsTest, OneAircraftInOneConfigurationIsLoadedOnce) {
   EXPECT_EQ(alone.sources, fast->aircraft->sources);
 }
 
+TEST_F(SharedInputsTest, SizesThatDifferInTheSeventhDecimalAreTwoAircraft) {
+  SharedInputs shared;
+  scene::Intruder intruder = intruder_of(triangle(8e5));
+  const auto span_m = [&](double scale) {
+    intruder.model_scale = scale;
+    return model::extents(shared.type_of(intruder, straight_at(50), {}, {})->aircraft->mesh)
+        .span_m();
+  };
+  EXPECT_NEAR(span_m(1.4e-6) / span_m(1.2e-6), 1.4 / 1.2, 1e-6);
+}
+
 TEST_F(SharedInputsTest, ThreadsThatWantOneAircraftGetOne) {
   SharedInputs shared;
   const scene::Intruder intruder = intruder_of("c172/news");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Approach, Change, Clip, Json, Path, Plan, State, Table, Track} from './contract';
+import type {Approach, Change, Clip, Json, Ned, Path, Plan, State, Table, Track} from './contract';
 import {type Point, clamp, courseOf, frameAt, isPlaced, mix, nedAt, radians, relativeOf, round, speedOf, timeAt, turned, velocityAt} from './geometry';
 
 // Of a scene's numbers (src/scene/scene/limits.h).
@@ -165,6 +165,18 @@ export function toMoments(flyer: Flyer, track: Track, clip: Clip): Change[]|null
   return [...removed(flyer), ...inserts];
 }
 
+// The closest approach of two that go straight on from a frame at the clip's end, seconds later (or before, if < 0).
+function beyondClip(plan: Plan, track: Track, frame: number, own: Ned, other: Ned) {
+  const [here, there] = [nedAt(plan, plan.own.ned, frame), nedAt(plan, track.ned, frame)];
+  if (!here || !there) return null;
+  const [n, e, d] = [0, 1, 2].map((k) => other[k] - own[k]);
+  const apart = [0, 1, 2].map((k) => there[k] - here[k]);
+  const later_s = -(apart[0] * n + apart[1] * e + apart[2] * d) / Math.max(1e-9, n * n + e * e + d * d);
+  const [north, east, down] = [apart[0] + n * later_s, apart[1] + e * later_s, apart[2] + d * later_s];
+  const course = radians(courseOf(own));
+  return {later_s, right_m: east * Math.cos(course) - north * Math.sin(course), above_m: -down};
+}
+
 // The same path by its closest approach: its place and its velocity there.
 export function toApproach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): Change[]|null {
   const cpa = track.cpa;
@@ -174,10 +186,14 @@ export function toApproach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): 
   if (!own || !other) return null;
   const course = round(turned(courseOf(other) - courseOf(own)), 1);
   const climb = round(-other[2], 1);
+  const near = frame <= plan.frames[0] || frame >= plan.frames[plan.frames.length - 1] ?
+      beyondClip(plan, track, frame, own, other) :
+      {later_s: 0, right_m: cpa.right_m, above_m: cpa.above_m};
+  if (!near) return null;
   const words: [string, number][] = [
-    ['cpa_time_s', round(cpa.time_s, 2)],
-    ['cpa_right_m', round(cpa.right_m, 1)],
-    ['cpa_above_m', round(cpa.above_m, 1)],
+    ['cpa_time_s', round(cpa.time_s + near.later_s, 2)],
+    ['cpa_right_m', round(near.right_m, 1)],
+    ['cpa_above_m', round(near.above_m, 1)],
     ['course_deg', course],
     ['speed_mps', Math.max(0.1, round(speedOf(other), 1))],
     ...(climb ? ([['climb_mps', climb]] as [string, number][]) : []),
@@ -276,6 +292,8 @@ export function copyOf(flyer: Flyer, clip: Clip): Table {
   const aside = Math.round(clip.height * 0.06);
   for (const seen of tables(table.seen))
     if (Array.isArray(seen.pixel)) seen.pixel = writtenPixel([Number(seen.pixel[0]), Number(seen.pixel[1]) + aside]);
+  for (const place of [table.position_ned_m, ...(Array.isArray(table.waypoints_ned_m) ? table.waypoints_ned_m : [])])
+    if (Array.isArray(place)) place[2] = Number(place[2]) - 20;
   const encounter = tableOf(table.encounter);
   if ('encounter' in table) encounter.cpa_above_m = (numberOf(encounter.cpa_above_m) ?? 0) + 20;
   return table;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's state without its elements. tests/studio_test.py bundles and runs it in a browser.
 import {Lost, Refused} from './connection';
-import type {Clip, State, Table, Track} from './contract';
+import type {Clip, Plan, State, Table, Track} from './contract';
 import {type Edit, Edits} from './edits';
-import {type Flyer, describedView, flyersOf, missOf, momentsOf, nearer, newFlyer, roomOf, timeOf, toMoments, withCourse, withMiss, withMoment} from './flyers';
+import {type Flyer, describedView, flyersOf, missOf, momentsOf, nearer, newFlyer, roomOf, timeOf, toApproach, toMoments, withCourse, withMiss, withMoment} from './flyers';
 import {frameAt, freePlace, nedAt, seenAt, timeAt, turned} from './geometry';
 import {Store} from './store';
 
@@ -289,6 +289,19 @@ tests['Another statement takes the place of the first'] = () => {
   same(
       changes.flatMap((change) => ('insert' in change ? [[change.at, change.table.time_s]] : [])),
       [[0, 0], [1, 2.467], [2, 4.967]]);
+};
+tests['A closest approach beyond the clip is where both go straight on'] = () => {
+  const at = (north: number, east: number): [number, number, number] => [north, east, -150];
+  const plan = {frames: [0, 149], own: {ned: [at(0, 0), at(149, 0)]}} as unknown as Plan;
+  const other: Track = {
+    ...track((k) => [k, k]),
+    ned: [at(1000, 10), at(702, 10)],
+    cpa: {time_s: 149 / 30, range_m: 553, ahead_m: 553, right_m: 10, above_m: 0} as unknown as Track['cpa'],
+  };
+  const changes = toApproach(flyer({aircraft: 'a'}), other, plan, CLIP)!;
+  same(
+      changes.flatMap((change) => ('set' in change ? [[change.set[3], change.to]] : [])),
+      [['cpa_time_s', 11.11], ['cpa_right_m', 10], ['cpa_above_m', 0], ['course_deg', 180], ['speed_mps', 60]]);
 };
 tests['Flyers have names, kinds and statements'] = () => {
   const all = flyersOf({

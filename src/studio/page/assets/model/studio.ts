@@ -136,6 +136,7 @@ export class Studio {
   add(choice: Choice, at: Point|null = null): void {
     const {state, clip, plan, frame} = this.store.now;
     if (!state || !clip) return;
+    if (clip.frames < 2) return this.store.say('error', 'A path by moments needs two frames; the clip has one.');
     const key = choice.kind === 'aircraft' ? 'intruder' : 'distractor';
     const list = state.scene[key];
     const count = Array.isArray(list) ? list.length : 0;
@@ -454,6 +455,11 @@ export class Studio {
       this.store.say('warning', event.line);
     } else if (event.state.revision >= (this.store.now.state?.revision ?? 0) || this.edits.isIdle) {
       const state = this.known(event.state);
+      // Where another page or program has added or removed flyers, a place in the file is that of another one.
+      const {state: before} = this.store.now;
+      const names = (scene: Table) => JSON.stringify(flyersOf(scene).map(({path, table}) => [path[0], table.id]));
+      if (before && this.wholes === 0 && this.edits.isIdle && names(state.scene) !== names(before.scene))
+        this.store.put({selected: null, moment: null});
       const isNew = state.revision !== this.store.now.state?.revision || state.text !== this.store.now.state?.text;
       this.store.put({state});
       this.openIfOther(state);
