@@ -76,8 +76,7 @@ double angle_of_rays(const View& view, const PixelBox& patch, const Span& span) 
   // The border is looked at from point to point; what lies between them is within the margin.
   constexpr int kPoints = 16;
   constexpr double kMarginRad = 0.02;
-  constexpr double kRoundingRad = 1e-6;  // of the field's end, beyond which no pixel has a ray
-  double least = 1;                      // cosine
+  double least = 1;  // cosine
   for (int k = 0; k < 3; ++k) {
     const View then = view.at(span.at(k));
     for (int i = 0; i <= kPoints; ++i) {
@@ -88,7 +87,7 @@ double angle_of_rays(const View& view, const PixelBox& patch, const Span& span) 
                                  Pixel(patch.x, y),
                                  Pixel(patch.right(), y)}) {
         const Vector3 ray = ray_in_cam(then, pixel);
-        if (!ray.allFinite()) return view.lens->max_angle_rad() + kRoundingRad;
+        if (!ray.allFinite()) return view.lens->max_angle_rad() + kMarginRad;
         least = std::min(least, ray.z());
       }
     }
