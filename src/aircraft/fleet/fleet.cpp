@@ -369,7 +369,8 @@ void warn_of_size(const std::string& name, const model::Mesh& mesh, const Warn& 
   const model::Extents size = model::extents(mesh);
   const double longest_m = std::max({size.length_m(), size.span_m(), size.height_m()});
   const double from_origin_m = ((size.low_in_body + size.high_in_body) / 2).norm();
-  if (from_origin_m > longest_m)
+  constexpr double kFarLengths = 10;  // a part of an aircraft has the aircraft's origin: chosen
+  if (from_origin_m > kFarLengths * longest_m)
     warn(warn_to,
          fmt::format("{}: its middle lies {:.4g} m from its origin, which is what a scene places; "
                      "expected an origin within the aircraft",
