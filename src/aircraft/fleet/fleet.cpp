@@ -365,7 +365,9 @@ constexpr double kLongest_m = 250;
 
 // Many models are in centimetres or millimetres, and most files do not state their unit; those of a
 // larger drawing may lie far from its origin, which is what a scene places.
-void warn_of_size(const std::string& name, const model::Mesh& mesh, const Warn& warn_to) {
+void warn_of_size_and_origin(const std::string& name,
+                             const model::Mesh& mesh,
+                             const Warn& warn_to) {
   const model::Extents size = model::extents(mesh);
   const double longest_m = std::max({size.length_m(), size.span_m(), size.height_m()});
   const double from_origin_m = ((size.low_in_body + size.high_in_body) / 2).norm();
@@ -420,7 +422,7 @@ Aircraft load_aircraft(const std::string& name,
   aircraft.catalogue_scale = scale_of(name, options, aircraft.mesh);
   if (aircraft.catalogue_scale != 1) scale_mesh(aircraft.mesh, aircraft.catalogue_scale);
   if (wrapper::is_model_file(name) && wrapper::ending_of(name) != ".xml")
-    warn_of_size(name, aircraft.mesh, warn_to);
+    warn_of_size_and_origin(name, aircraft.mesh, warn_to);
   std::vector<fs::path>& sources = aircraft.sources;
   std::sort(sources.begin(), sources.end());
   sources.erase(std::unique(sources.begin(), sources.end()), sources.end());

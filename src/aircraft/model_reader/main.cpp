@@ -42,7 +42,8 @@ constexpr float kSmoothBelowDeg = 60;  // the crease angle where a file states n
 constexpr float kDefaultAlphaCutoff = 0.5f;  // of glTF 2.0, section 5.19 (alphaCutoff)
 constexpr int kMaxNodeDepth = 256;           // bounds the recursion over a hostile file
 constexpr std::array<float, 3> kBlack = {0, 0, 0};
-// Of formats without materials, in sRGB: that of an OBJ without them.
+constexpr std::array<float, 3> kWhite = {1, 1, 1};
+// Of STL and PLY that state no colour, in sRGB: that of an OBJ without materials.
 constexpr std::array<float, 3> kGrey = {0.6f, 0.6f, 0.6f};
 constexpr std::size_t kNamedFiles = 5;  // missing files that a message names
 
@@ -278,7 +279,6 @@ class SceneReader {
     aiColor3D colour;
     if (material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS)
       batch.srgb.diffuse = colour_of(colour, is_linear);
-    if (ending_ == ".stl" || ending_ == ".ply") batch.srgb.diffuse = kGrey;
     if (material.Get(AI_MATKEY_COLOR_EMISSIVE, colour) == aiReturn_SUCCESS)
       batch.srgb.emission = colour_of(colour, is_linear);
     // A material that shines by itself alone is seen as paint of that colour.
@@ -301,6 +301,10 @@ class SceneReader {
           std::min(ending_ == ".obj" ? value / 4 : value, 128.0f);  // it takes 4 Ns
     read_alpha_mode(material, batch);
     read_texture(material, batch, uv_channel);
+    // assimp has white where these state no colour; beneath a texture that is right.
+    if ((ending_ == ".stl" || ending_ == ".ply") && batch.texture.empty() &&
+        batch.srgb.diffuse == kWhite)
+      batch.srgb.diffuse = kGrey;
   }
 
   // Opaque materials of glTF have no alpha, and of masks a place is there or not (glTF 2.0, section

@@ -173,14 +173,31 @@ TEST_F(Formats, NamesHaveNoBlanksAroundThemAndOneNumberIsAGrey) {
   EXPECT_EQ(warnings_, "");
 }
 
+// A picture is not darkened by the grey of a shape alone.
+TEST_F(Formats, ATextureOfAPlyIsShownAsItIs) {
+  write_file(folder_ / "t.tga",
+             std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\30\0", 18) + "\xff\xff\xff");
+  const auto loaded =
+      load("a.ply",
+           "ply\nformat ascii 1.0\ncomment TextureFile t.tga\nelement vertex 4\nproperty float x\n"
+           "property float y\nproperty float z\nproperty float s\nproperty float t\n"
+           "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0 0 0\n3 0 0 1 0\n0 2 0 0 1\n0 0 1 1 1\n3 0 1 2\n3 0 2 3\n");
+  EXPECT_EQ(loaded.mesh.textures.size(), 1u);
+  EXPECT_EQ(loaded.mesh.materials.at(0).diffuse, (std::array<float, 3>{1, 1, 1}));
+}
+
 TEST_F(Formats, StlAndPlyAreRead) {
   const auto facet = [](const std::string& a, const std::string& b, const std::string& c) {
     return "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c +
            "\nendloop\nendfacet\n";
   };
-  expect_size(load("a.stl",
-                   "solid a\n" + facet("0 0 0", "3 0 0", "0 2 0") +
-                       facet("0 0 0", "0 2 0", "0 0 1") + "endsolid a\n"));
+  const auto stl = load("a.stl",
+                        "solid a\n" + facet("0 0 0", "3 0 0", "0 2 0") +
+                            facet("0 0 0", "0 2 0", "0 0 1") + "endsolid a\n");
+  expect_size(stl);
+  // Grey, in linear light.
+  EXPECT_FLOAT_EQ(stl.mesh.materials.at(0).diffuse[0], std::pow((0.6f + 0.055f) / 1.055f, 2.4f));
   expect_size(load("a.ply",
                    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
                    "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"

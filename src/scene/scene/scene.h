@@ -117,8 +117,9 @@ struct Camera {
   // the shake about it (`smoothed`), or none is measured. Otherwise it is that of the first frame,
   // from where the measured motion turns it.
   bool follows_attitude = false;
-  // True where it is followed and the measured shake added (`smoothed`).
-  bool is_shaken = false;
+  // The measured shake that is added to it: what a window of this standard deviation leaves
+  // (`smoothed`); 0: none.
+  double added_shake_s = 0;
   Where where;
 };
 

@@ -90,9 +90,10 @@ Camera camera_in(const TableReader& parent, const Motion& motion) {
   camera.position_is_stated = table.has("position_ned_m");
   if (!camera.log && camera.log_offset_s)
     table.fail("log_offset_s", "log_offset_s is stated without a log; expected log as well");
-  camera.is_shaken =
-      motion.reference == MotionReference::kSmoothed && motion.model != MotionModel::kNone;
-  camera.follows_attitude = camera.is_shaken || motion.model == MotionModel::kNone;
+  camera.follows_attitude =
+      motion.reference == MotionReference::kSmoothed || motion.model == MotionModel::kNone;
+  if (motion.reference == MotionReference::kSmoothed && motion.model != MotionModel::kNone)
+    camera.added_shake_s = motion.smoothing_s;
   camera.position_ned_m =
       table.tuple<Vector3>("position_ned_m", kPosition).value_or(camera.position_ned_m);
   camera.velocity_ned_mps =

@@ -3,7 +3,7 @@
 import {Lost, Refused} from './connection';
 import type {Clip, Plan, State, Table, Track} from './contract';
 import {type Edit, Edits} from './edits';
-import {type Flyer, describedView, flyersOf, missOf, momentsOf, nearer, newFlyer, roomOf, timeOf, toApproach, toMoments, withCourse, withMiss, withMoment} from './flyers';
+import {type Flyer, copyOf, describedView, flyersOf, missOf, momentsOf, nearer, newFlyer, roomOf, timeOf, toApproach, toMoments, withCourse, withMiss, withMoment} from './flyers';
 import {frameAt, freePlace, nedAt, seenAt, timeAt, turned} from './geometry';
 import {Store} from './store';
 
@@ -302,6 +302,11 @@ tests['A closest approach beyond the clip is where both go straight on'] = () =>
   same(
       changes.flatMap((change) => ('set' in change ? [[change.set[3], change.to]] : [])),
       [['cpa_time_s', 11.11], ['cpa_right_m', 10], ['cpa_above_m', 0], ['course_deg', 180], ['speed_mps', 60]]);
+};
+tests['A copy stands beside the one it is of'] = () => {
+  const copy = copyOf(flyer({id: 'a', waypoints_ned_m: [[300, -60, -170], [400, 0, -170]]}), CLIP);
+  same(copy, {waypoints_ned_m: [[300, -60, -190], [400, 0, -190]]});
+  same(copyOf(flyer({position_ned_m: [1, 2, -3]}), CLIP), {position_ned_m: [1, 2, -23]});
 };
 tests['Flyers have names, kinds and statements'] = () => {
   const all = flyersOf({

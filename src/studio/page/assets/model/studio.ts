@@ -458,10 +458,10 @@ export class Studio {
       // Where another page or program has added or removed flyers, a place in the file is that of another one.
       const {state: before} = this.store.now;
       const names = (scene: Table) => JSON.stringify(flyersOf(scene).map(({path, table}) => [path[0], table.id]));
-      if (before && this.wholes === 0 && this.edits.isIdle && names(state.scene) !== names(before.scene))
-        this.store.put({selected: null, moment: null});
+      const isOther =
+          before && this.wholes === 0 && this.edits.isIdle && names(state.scene) !== names(before.scene);
       const isNew = state.revision !== this.store.now.state?.revision || state.text !== this.store.now.state?.text;
-      this.store.put({state});
+      this.store.put({state, ...(isOther ? {selected: null, moment: null} : {})});
       this.openIfOther(state);
       if (isNew) this.settle();
     }
