@@ -411,6 +411,29 @@ std::string one_sentence(const char* message) {
   return text.empty() ? "it holds no model" : text;
 }
 
+// Gives each face of a mesh vertices of its own, as assimp's steps have it; its reader of PLY does
+// not.
+void unshare(aiMesh& mesh) {
+  std::vector<unsigned> shared;  // of each new vertex
+  std::for_each_n(mesh.mFaces, mesh.mNumFaces, [&](aiFace& face) {
+    std::for_each_n(face.mIndices, face.mNumIndices, [&](unsigned& index) {
+      shared.push_back(index);
+      index = static_cast<unsigned>(shared.size() - 1);
+    });
+  });
+  const auto spread = [&]<typename Value>(Value*& values) {
+    if (values == nullptr) return;
+    auto* own = new Value[shared.size()];  // the mesh deletes it
+    std::ranges::transform(shared, own, [&](unsigned index) { return values[index]; });
+    delete[] std::exchange(values, own);
+  };
+  spread(mesh.mVertices);
+  spread(mesh.mNormals);
+  std::ranges::for_each(mesh.mColors, spread);
+  std::ranges::for_each(mesh.mTextureCoords, spread);
+  mesh.mNumVertices = static_cast<unsigned>(shared.size());
+}
+
 // Appends the triangles of a model file in another format than .ac by the Open Asset Import Library
 // (assimp): .obj .3ds .stl .ply .dae .gltf .glb .fbx. Only the importer for the ending of the file
 // runs. Files that the model names come from assembly.files(). Coordinates are those of the file;
@@ -431,17 +454,20 @@ void append_other_format(wrapper::Assembly& assembly, const wrapper::ModelFile& 
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   // Without normals a glTF is flat (glTF 2.0, section 3.7.2.1): its triangles keep their own.
   const bool is_gltf = ending == ".gltf" || ending == ".glb";
-  // So is a PLY: assimp's faces of one share their vertices, whose normals would be those of one
-  // face.
-  const unsigned smooth = is_gltf || ending == ".ply" ? 0u : unsigned{aiProcess_GenSmoothNormals};
+  unsigned steps = aiProcess_ValidateDataStructure | aiProcess_Triangulate |
+                   aiProcess_JoinIdenticalVertices | aiProcess_SortByPType;
+  if (!is_gltf) steps |= aiProcess_GenSmoothNormals;
   // A 3DS states no normals; assimp's are smooth over every edge where it states no groups.
-  const unsigned without_normals = ending == ".3ds" ? unsigned{aiProcess_RemoveComponent} : 0u;
+  if (ending == ".3ds") steps |= aiProcess_RemoveComponent;
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
   if (is_gltf) warn_of_extensions(assembly, file.path);
+  const bool is_ply = ending == ".ply";
   const aiScene* scene = importer.ReadFile(
-      file.path.string(),
-      smooth | without_normals | aiProcess_ValidateDataStructure | aiProcess_Triangulate |
-          aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+      file.path.string(), is_ply ? unsigned{aiProcess_ValidateDataStructure} : steps);
+  if (scene != nullptr && is_ply) {
+    std::for_each_n(scene->mMeshes, scene->mNumMeshes, [](aiMesh* mesh) { unshare(*mesh); });
+    scene = importer.ApplyPostProcessing(steps);
+  }
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw Error("cannot be read as a 3D model: " + one_sentence(importer.GetErrorString()),
                 {shown});

@@ -162,6 +162,25 @@ TEST_F(Formats, ASharpEdgeIsNotSmoothedWhereNoNormalsAreStated) {
                   .mesh);
 }
 
+// Two triangles of a PLY that meet at 27 degrees: the vertices of their edge have one normal.
+TEST_F(Formats, ARoundPlyIsSmooth) {
+  const model::Mesh mesh =
+      load("a.ply",
+           "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+           "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+           "end_header\n0 0 0\n0 2 0\n-2 0 0\n2 0 -1\n3 0 1 2\n3 0 3 1\n")
+          .mesh;
+  const auto& triangles = mesh.parts.at(0).triangles;
+  int shared = 0;
+  for (const std::uint32_t one : triangles.at(0).vertex)
+    for (const std::uint32_t other : triangles.at(1).vertex) {
+      if (mesh.positions[one] != mesh.positions[other]) continue;
+      EXPECT_TRUE(mesh.normals[one].isApprox(mesh.normals[other]));
+      ++shared;
+    }
+  EXPECT_EQ(shared, 2);
+}
+
 TEST_F(Formats, NamesHaveNoBlanksAroundThemAndOneNumberIsAGrey) {
   write_file(folder_ / "t.tga",
              std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\30\0", 18) + "\xff\xff\xff");
