@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sys
 import time
 from typing import Callable, Iterator, Optional
@@ -13,8 +14,12 @@ Progress = Callable[[int, int], object]
 _REDRAW_S = 0.1
 
 
+def _can_redraw() -> bool:
+    return sys.stderr is not None and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+
+
 class Line:
-    """A line on the terminal of standard error: "measuring  12/322 (4 %)". Without a terminal it draws nothing."""
+    """A line on the terminal of standard error: "measuring  12/322 (4 %)". Without a terminal that can redraw it draws nothing."""
 
     def __init__(self, stage: str) -> None:
         self._stage = stage
@@ -23,7 +28,7 @@ class Line:
 
     def draw(self, done: int, total: int, stage: str = "") -> None:
         now_s = time.monotonic()
-        if (self._is_drawn and now_s - self._drawn_s < _REDRAW_S) or sys.stderr is None or not sys.stderr.isatty():
+        if (self._is_drawn and now_s - self._drawn_s < _REDRAW_S) or not _can_redraw():
             return
         count = f"{done}/{total} ({100 * done // total} %)" if total > 0 else str(done)
         self._drawn_s, self._is_drawn = now_s, True

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <string_view>
 #include <thread>
 
 #include <fcntl.h>
@@ -60,10 +61,15 @@ std::atomic<bool> interrupt_reported{false};
 std::atomic<bool> interrupt_as_json{false};
 constexpr const char* kInterruptedWords = "interrupted; no half-written file is left behind";
 
+// A terminal without control sequences, as that of an editor or of a build service, says so.
+bool has_terminal() {
+  const char* kind = std::getenv("TERM");
+  return ::isatty(STDERR_FILENO) == 1 && (kind == nullptr || kind != std::string_view("dumb"));
+}
+
 }  // namespace
 
-Console::Console(const ConsoleOptions& options)
-    : options_(options), terminal_(::isatty(STDERR_FILENO) == 1) {
+Console::Console(const ConsoleOptions& options) : options_(options), terminal_(has_terminal()) {
   interrupt_as_json = options.json_log;
 }
 

@@ -117,9 +117,6 @@ struct Camera {
   // the shake about it (`smoothed`), or none is measured. Otherwise it is that of the first frame,
   // from where the measured motion turns it.
   bool follows_attitude = false;
-  // The measured shake that is added to it: what a window of this standard deviation leaves
-  // (`smoothed`); 0: none.
-  double added_shake_s = 0;
   Where where;
 };
 

@@ -92,8 +92,6 @@ Camera camera_in(const TableReader& parent, const Motion& motion) {
     table.fail("log_offset_s", "log_offset_s is stated without a log; expected log as well");
   camera.follows_attitude =
       motion.reference == MotionReference::kSmoothed || motion.model == MotionModel::kNone;
-  if (motion.reference == MotionReference::kSmoothed && motion.model != MotionModel::kNone)
-    camera.added_shake_s = motion.smoothing_s;
   camera.position_ned_m =
       table.tuple<Vector3>("position_ned_m", kPosition).value_or(camera.position_ned_m);
   camera.velocity_ned_mps =

@@ -136,7 +136,8 @@ Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude = {});
 // Reads a sampled path: CSV with a header and the columns
 // time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg] in any order. The position follows the
 // C2 spline through the samples. An angle that the file states follows a spline through its
-// unwrapped samples; any other angle follows from the path as above.
+// unwrapped samples; any other angle follows from the path as above. The path goes straight on for
+// half a millisecond at both ends, since a container may round the times of its frames.
 //
 // Errors carry file and line: a missing or unknown column (the message offers the nearest
 // spelling), a cell that is not a number, times that do not increase, fewer than two rows.

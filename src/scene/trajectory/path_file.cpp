@@ -108,7 +108,10 @@ Samples read_path_samples(const std::filesystem::path& path) {
 }
 
 Path read_path_file(const std::filesystem::path& path) {
-  return path_through_samples(read_path_samples(path));
+  // Half of the step of the clock of a Matroska file, to which the time of a frame is rounded.
+  constexpr double kRounding_s = 0.5e-3;
+  const Path sampled = path_through_samples(read_path_samples(path));
+  return straight_on(sampled, sampled.start_s() - kRounding_s, sampled.end_s() + kRounding_s);
 }
 
 }  // namespace airtruth::trajectory

@@ -16,6 +16,7 @@
 #include "scene/scene/camera_keys.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/level_camera.h"
+#include "sequence/setup/steady_camera.h"
 
 namespace airtruth::pipeline {
 namespace {
@@ -423,6 +424,7 @@ OpenedScene open_over(const video::StreamInfo& of_video,
       opened.intruders[i].catalogue_scale = scale;
   const video::StreamInfo info = used_stream(of_video, scene.background);
   setup::check_camera_path(world, info, options.warn);
+  world.camera = setup::steady_camera(world.camera, opened, info);
   if (const double rate_hz = info.frame_rate.value(); rate_hz > 0)
     setup::warn_of_gaps(
         opened.camera, static_cast<double>(info.frame_count_estimate) / rate_hz, options.warn);

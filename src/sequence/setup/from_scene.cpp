@@ -132,21 +132,6 @@ trajectory::Path path_from_file(const scene::Camera& camera) {
   return trajectory::at_attitude(path, yaw_pitch_roll(first->world_from_body));
 }
 
-// Attitudes that are logged often hold what shakes the camera, too.
-void warn_of_shake_in(const flight_log::FlightLog& log,
-                      const scene::Camera& camera,
-                      const Warn& warn) {
-  const std::size_t n = log.attitudes.size();
-  if (n < 2 || log.attitudes.back().time_s - log.attitudes.front().time_s >=
-                   static_cast<double>(n - 1) * camera.added_shake_s)
-    return;
-  airtruth::warn(warn,
-                 fmt::format("{}: its attitudes hold the camera's shake, and [motion] reference = "
-                             "\"smoothed\" adds the one that is measured; leave reference out, or "
-                             "state model = \"none\"",
-                             camera.log->string()));
-}
-
 trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
   flight_log::FlightLog log = read_log(*camera.log);
   if (!log.first_fault.empty())
@@ -155,7 +140,6 @@ trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
                                camera.log->string(),
                                log.left_out,
                                log.first_fault));
-  warn_of_shake_in(log, camera, warn);
   const double offset_s = offset_of(camera, log);
   Vector3 first = camera.position_ned_m;
   if (!camera.position_is_stated)
