@@ -5,8 +5,7 @@
 #include <deque>
 #include <span>
 
-#include <unsupported/Eigen/MatrixFunctions>
-
+#include "camera/motion/map_logarithm.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::motion {
@@ -155,11 +154,7 @@ void add_neighbours(
     if (std::abs(dt) > kMaxSigmas) return;
     i_from_k = unit_determinant(step(against_first, i, next) * i_from_k);
     const double weight = std::exp(-0.5 * dt * dt);
-    // The logarithm of a matrix near the identity, to third order. This is exact enough in the
-    // window.
-    const Homography e = i_from_k - Homography::Identity();
-    const Homography log =
-        e.norm() < 0.1 ? Homography(e - 0.5 * e * e + e * e * e / 3) : Homography(i_from_k.log());
+    const Homography log = logarithm(i_from_k);
     if (!log.allFinite()) return;
     all.sum += weight * log;
     all.weight += weight;
@@ -175,7 +170,7 @@ void add_neighbours(
 Homography shaking_homography(Frames against_first, std::size_t k, double sigma_s) {
   NeighbourSum all;
   for (const int direction : {+1, -1}) add_neighbours(against_first, k, direction, sigma_s, all);
-  const Homography steady_from_k = (all.sum / all.weight).exp();
+  const Homography steady_from_k = exponential(all.sum / all.weight);
   const Homography shake = steady_from_k.inverse();
   return shake.allFinite() ? Homography(shake / shake(2, 2)) : Homography(Homography::Identity());
 }
