@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/wait.h>
 
 #include "dataset/build/inputs.h"
@@ -128,15 +129,19 @@ struct Job {
 // Plugins of a cluster print notes around the line of the job. Throws Error where there is none.
 Job submitted_job(const std::string& arguments) {
   const Ran ran = run_in_shell("sbatch --parsable " + arguments);
-  const std::string last = ran.lines.empty() ? "no word why" : ran.lines.back();
+  const std::string said =
+      ran.lines.empty() ? "no word why" : fmt::format("{}", fmt::join(ran.lines, "; "));
   if (!ran.is_done)
-    throw Error("sbatch failed: " + last + "; expected Slurm's client tools and a running cluster");
+    throw Error(
+        fmt::format("sbatch failed: {}; expected Slurm's client tools, a running cluster and "
+                    "options that it takes",
+                    said));
   for (const std::string& line : ran.lines) {
     const std::size_t end = std::min(line.find_first_not_of("0123456789"), line.size());
     if (end == line.size()) return {line, {}};
     if (end > 0 && line[end] == ';') return {line.substr(0, end), line.substr(end + 1)};
   }
-  throw Error("sbatch states no job: " + last + "; expected its number");
+  throw Error("sbatch states no job: " + said + "; expected its number");
 }
 
 }  // namespace

@@ -41,11 +41,95 @@ Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rot
 // part, and half a pixel to spare.
 constexpr double kSearchMarginPx = 1.5;
 
+constexpr double kFarPx = 1e6;  // pixels_of() goes no farther
+
 // For an aircraft so near that a part of it has no pixel: the rest may lie anywhere, also beyond
 // the frame, which cuts it.
 Box everywhere(const lens::ImageSize& size) {
-  constexpr double kFarPx = 1e6;  // pixels_of() goes no farther
   return wider(Box{0, 0, double(size.width), double(size.height)}, kFarPx);
+}
+
+// The directions of a cone, in cam.
+struct Cone {
+  Vector3 axis = Vector3::UnitZ();
+  double half_angle_rad = kPi;
+};
+
+double angle_between(const Vector3& a, const Vector3& b) {
+  return 2 * std::atan2((a - b).norm(), (a + b).norm());
+}
+
+// The cone that holds an aircraft throughout the frame's exposure and readout.
+Cone cone_of(const Actor& actor,
+             const trajectory::State& state,
+             const Twist& twist,
+             const projection::Sight& sight) {
+  const model::Mesh& mesh = *actor.type->silhouette.mesh;
+  double radius_m = 0;
+  for (const model::Part& part : mesh.parts)
+    radius_m = std::max<double>(radius_m, part.centre_in_body.norm() + reach_m(mesh, part));
+  const double half_s = 0.5 * (sight.shutter.exposure_s + sight.shutter.readout_s);
+  radius_m += half_s * (twist.velocity_mps - sight.camera.velocity_mps).norm();
+  const Vector3 p_in_cam = sight.cam_from_world * state.position_in_world;
+  const double distance_m = p_in_cam.norm();
+  if (!(distance_m > radius_m)) return {};
+  return {p_in_cam / distance_m,
+          std::asin(radius_m / distance_m) + half_s * sight.camera.rate_radps.norm()};
+}
+
+// The rays of a lattice of pixels over the picture.
+struct Lattice {
+  static constexpr int kStepPx = 16;
+
+  explicit Lattice(const lens::Lens& lens)
+      : columns((lens.size().width + kStepPx - 1) / kStepPx),
+        rows((lens.size().height + kStepPx - 1) / kStepPx) {
+    for (int y = 0; y <= rows; ++y)
+      for (int x = 0; x <= columns; ++x)
+        rays.push_back(lens.ray_from_pixel(Pixel(x * kStepPx, y * kStepPx)));
+  }
+  const std::optional<Vector3>& at(int x, int y) const {
+    return rays[static_cast<std::size_t>(y * (columns + 1) + x)];
+  }
+  // The greatest angle to a neighbour that has a ray.
+  double step_rad(int x, int y) const {
+    double widest = 0;
+    for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
+      const int to_x = x + dx, to_y = y + dy;
+      if (to_x < 0 || to_y < 0 || to_x > columns || to_y > rows || !at(to_x, to_y)) continue;
+      widest = std::max(widest, angle_between(*at(x, y), *at(to_x, to_y)));
+    }
+    return widest > 0 ? widest : kPi;
+  }
+
+  int columns, rows;
+  std::vector<std::optional<Vector3>> rays;
+};
+
+// Bounds of the pixels whose rays lie in a cone, and some around; beyond the frame where they touch
+// its edge.
+std::optional<Box> box_of(const Cone& cone, const lens::Lens& lens) {
+  // Of the steps around a lattice pixel, so far from it the ray of a pixel next to it may be. Where
+  // the curve of a lens stops rising as a parabola does, the last ray is 2.4 steps away.
+  constexpr double kReachSteps = 3;
+  const Lattice lattice(lens);
+  BoxBounds bounds;
+  for (int y = 0; y <= lattice.rows; ++y)
+    for (int x = 0; x <= lattice.columns; ++x)
+      if (lattice.at(x, y) && angle_between(*lattice.at(x, y), cone.axis) <=
+                                  cone.half_angle_rad + kReachSteps * lattice.step_rad(x, y))
+        bounds.add(Pixel(x, y) * Lattice::kStepPx);
+  auto box = bounds.box();
+  if (!box) return box;
+  box = wider(*box, Lattice::kStepPx);
+  const auto beyond = [](double place, double edge, double far_px) {
+    return (far_px < 0 ? place <= edge : place >= edge) ? edge + far_px : place;
+  };
+  const double left = beyond(box->x, 0, -kFarPx), top = beyond(box->y, 0, -kFarPx);
+  return Box{left,
+             top,
+             beyond(box->right(), lens.size().width, kFarPx) - left,
+             beyond(box->bottom(), lens.size().height, kFarPx) - top};
 }
 
 // The exact box is that of the silhouette's points. Through a lens that is no pinhole the straight
@@ -56,10 +140,30 @@ double bulge_px(const Box& box, const lens::Lens& lens) {
   return side_px * side_px / (8 * lens.focal_px());
 }
 
-std::optional<Box> search_box(const projection::ExactBox& exact, const lens::Lens& lens) {
-  if (!exact.box) return std::nullopt;
+// Of an aircraft that has a part without a pixel: across the end of a lens's field, or beside and
+// behind a pinhole.
+Box box_of_partly_unseen(const Box& seen,
+                         const Actor& actor,
+                         const trajectory::State& state,
+                         const Twist& twist,
+                         const projection::Sight& sight) {
+  const lens::Lens& lens = *sight.lens;
+  if (std::holds_alternative<lens::Pinhole>(lens.model()) ||
+      !sight.frame_from_nominal.isIdentity(0))
+    return everywhere(lens.size());
+  const auto box = box_of(cone_of(actor, state, twist, sight), lens);
+  return box ? bounds(*box, seen) : seen;
+}
+
+std::optional<Box> search_box(const projection::ExactBox& exact,
+                              const Actor& actor,
+                              const std::optional<trajectory::State>& state,
+                              const Twist& twist,
+                              const projection::Sight& sight) {
+  if (!state || !exact.box) return std::nullopt;
+  const lens::Lens& lens = *sight.lens;
   const Box box = exact.partly_unseen
-                      ? everywhere(lens.size())
+                      ? box_of_partly_unseen(*exact.box, actor, *state, twist, sight)
                       : wider(*exact.box, kSearchMarginPx + bulge_px(*exact.box, lens));
   if (!meets_frame(box, lens.size())) return std::nullopt;
   return box;
@@ -218,7 +322,7 @@ Moment moment_at(const World& world, std::int64_t frame, double time_s, const Sh
                                                          actor.turned_s(time_s),
                                                          twist)
                                  : projection::ExactBox{});
-    moment.search.push_back(search_box(moment.boxes.back(), world.lens));
+    moment.search.push_back(search_box(moment.boxes.back(), actor, state, twist, moment.sight));
   }
   for (const scene::LensMark& mark : world.lens_marks)
     moment.spots.push_back(spot_of(mark, moment.sight, world.to_sun_in_world, time_s, world.seed));

@@ -90,14 +90,16 @@ void Document::take() {
 
 template <typename Write>
 void Document::record(const Write& write) {
+  const bool is_said = !journal_fault_.empty();
+  journal_fault_.clear();
   try {
     write();
   } catch (const Error& error) {
-    if (!std::exchange(journal_fails_, true))
-      warn(warn_,
-           std::string("what is not saved is lost when the studio ends, since its journal cannot "
-                       "be written: ") +
-               error.what());
+    journal_fault_ = std::string(
+                         "what is not saved is lost when the studio ends, since its journal "
+                         "cannot be written: ") +
+                     error.what();
+    if (!is_said) warn(warn_, journal_fault_);
   }
 }
 
@@ -200,17 +202,20 @@ std::optional<std::string> Document::on_disk() const {
 }
 
 nlohmann::ordered_json Document::state() const {
-  return {
-      {"revision", revision_},
-      {"text", text()},
-      {"sha256", sha256_},
-      {"scene", values_},
-      {"notes", notes_},
-      {"problem", problem_.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(problem_)},
-      {"saved", saved_ && !changed_on_disk_},
-      {"undo", history_.undo_count()},
-      {"redo", history_.redo_count()},
-      {"changed_on_disk", changed_on_disk_}};
+  const auto text_or_null = [](const std::string& text) {
+    return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
+  };
+  return {{"revision", revision_},
+          {"text", text()},
+          {"sha256", sha256_},
+          {"scene", values_},
+          {"notes", notes_},
+          {"problem", text_or_null(problem_)},
+          {"saved", saved_ && !changed_on_disk_},
+          {"undo", history_.undo_count()},
+          {"redo", history_.redo_count()},
+          {"changed_on_disk", changed_on_disk_},
+          {"journal_fault", text_or_null(journal_fault_)}};
 }
 
 }  // namespace airtruth::document

@@ -76,7 +76,7 @@ class Document {
   void recover();
   void take();
   void add(Edit edit);
-  // Writes a step to the journal; where that fails it says so once.
+  // Writes a step to the journal. Where that fails it says so once, and state() does.
   template <typename Write>
   void record(const Write& write);
   // Of the file's bytes, whatever they are; "" where they cannot be read.
@@ -87,7 +87,7 @@ class Document {
   std::filesystem::path file_;
   Warn warn_;
   Journal journal_;
-  bool journal_fails_ = false;
+  std::string journal_fault_;  // why the last step is not in it; empty: it is
   History history_;
   std::string sha256_;  // of the text
   std::string edited_;  // the text that the last edit was made upon

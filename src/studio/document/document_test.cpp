@@ -203,6 +203,19 @@ TEST_F(OfAFile, SavedTextNeedsNoJournal) {
   EXPECT_EQ(later.text(), with_fov("61"));
 }
 
+TEST_F(OfAFile, AJournalThatCannotBeWrittenIsSaidUntilItCan) {
+  Document document = open();
+  EXPECT_TRUE(document.state()["journal_fault"].is_null());
+  fs::create_directory(journal());
+  document.edit(fov(61), "");
+  EXPECT_THAT(document.state()["journal_fault"].get<std::string>(),
+              HasSubstr("its journal cannot be written"));
+  fs::remove(journal());
+  document.edit(fov(62), "");
+  EXPECT_TRUE(document.state()["journal_fault"].is_null());
+  EXPECT_TRUE(fs::exists(journal()));
+}
+
 TEST_F(OfAFile, AnotherEditorsChangeIsTakenWhereAllIsSavedElseSaid) {
   Document document = open();
   EXPECT_FALSE(document.look_at_disk());

@@ -38,6 +38,7 @@ export interface State {
   undo: number;
   redo: number;
   changed_on_disk: boolean;
+  journal_fault: string|null;
 }
 
 // The same as the server has it: of a text that is no TOML there is no scene.

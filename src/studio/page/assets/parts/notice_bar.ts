@@ -12,6 +12,7 @@ export class NoticeBar extends Part {
   private lost = h('p', {class: 'notice error'});
   private problem = h('p', {class: 'notice error'});
   private progress = h('p', {class: 'notice info'});
+  private journal = h('p', {class: 'notice warning'});
   private disk = h('p', {class: 'notice warning'});
   private list = h('div', {});
   private notices = new Keyed<Notice, HTMLElement>(
@@ -23,7 +24,7 @@ export class NoticeBar extends Part {
     this.disk.append(
         h('span', {}, 'Another program has changed the file. If you keep yours, the next save replaces what it wrote.'),
         button('Take the file', () => void this.studio.reload()), button('Keep mine', () => void this.studio.keep()));
-    this.append(this.lost, this.problem, this.disk, this.progress, this.list);
+    this.append(this.lost, this.problem, this.journal, this.disk, this.progress, this.list);
   }
 
   protected update(): void {
@@ -38,6 +39,8 @@ export class NoticeBar extends Part {
     const problem = state?.problem ?? planProblem;
     this.problem.hidden = !problem;
     text(this.problem, problem ?? '');
+    this.journal.hidden = !state?.journal_fault || state.saved;
+    text(this.journal, state?.journal_fault ?? '');
     this.disk.hidden = !state?.changed_on_disk;
     const isMeasured =
         progress !== null && busy !== 'render' && (progress.total === 0 || progress.done < progress.total);

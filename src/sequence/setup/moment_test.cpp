@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sequence/setup/moment.h"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "camera/lens/lens.h"
 #include "foundation/geometry/transform.h"
-#include "sequence/setup/moment.h"
+#include "sequence/setup/world.h"
 
 namespace airtruth::setup {
 namespace {
@@ -70,6 +72,45 @@ TEST(LensMarks, DirtHasAShapeOfItsOwnAndKeepsIt) {
   EXPECT_NE(first->cosines, other->cosines);
   for (double angle = 0; angle < 6.3; angle += 0.1)
     EXPECT_GT(first->lobe(std::cos(angle), std::sin(angle)), 0.2);
+}
+
+// A fisheye whose curve stops rising at 94 degrees, within the picture, and an aircraft that goes
+// beyond it. Every pixel whose ray meets the sphere about the aircraft is searched, and few others.
+TEST(Moment, SearchesOnlyAboutAnAircraftAcrossTheEndOfALensesField) {
+  scene::Scene scene;
+  scene.lens.model = lens::ModelKind::kFisheye;
+  scene.lens.focal_px = Pixel(90, 90);
+  scene.lens.distortion = {-0.04, -0.02, 0, 0};
+  scene::Intruder intruder;
+  intruder.id = "across";
+  intruder.aircraft = "c172/news";
+  // From north-east of the camera to south-east of it, 60 m to the east.
+  intruder.waypoints_ned_m = {{60, 60, -155}, {-60, 60, -155}};
+  intruder.speed_mps = 60;
+  scene.intruders = {intruder};
+  const World world = load_world(scene, {400, 400}, {});
+  double radius_m = 0;
+  for (const Eigen::Vector3f& p : world.actors[0].type->silhouette.mesh->positions)
+    radius_m = std::max<double>(radius_m, p.norm());
+  int across = 0;
+  for (double time_s = 0; time_s < 2; time_s += 0.02) {
+    const Moment moment = moment_at(world, 0, time_s, {});
+    if (!moment.boxes[0].partly_unseen || !moment.boxes[0].box) continue;
+    ++across;
+    ASSERT_TRUE(moment.search[0]);
+    const Box& search = *moment.search[0];
+    EXPECT_LT(search.width * search.height, 400 * 400 / 8.0);
+    const Vector3 p_in_cam = moment.sight.cam_from_world * moment.states[0]->position_in_world;
+    const double half_angle_rad = std::asin(radius_m / p_in_cam.norm());
+    for (double y = 0.5; y < 400; ++y)
+      for (double x = 0.5; x < 400; ++x) {
+        const auto ray = world.lens.ray_from_pixel({x, y});
+        if (!ray || std::acos(ray->dot(p_in_cam.normalized())) > half_angle_rad) continue;
+        EXPECT_TRUE(x > search.x && x < search.right() && y > search.y && y < search.bottom())
+            << x << ", " << y << " at " << time_s << " s";
+      }
+  }
+  EXPECT_GT(across, 5);
 }
 
 }  // namespace
