@@ -114,8 +114,8 @@ struct Camera {
   // Whether the scene states the position at the first frame; else it is that of a log.
   bool position_is_stated = false;
   // True where the attitude is that of the path file or the log throughout: the measured motion is
-  // the shake about its mean (`smoothed`, setup/steady_camera.h), or none is measured. Otherwise it is that of the first frame,
-  // from where the measured motion turns it.
+  // the shake about its mean (`smoothed`, setup/steady_camera.h), or none is measured. Otherwise it
+  // is that of the first frame, from where the measured motion turns it.
   bool follows_attitude = false;
   Where where;
 };
