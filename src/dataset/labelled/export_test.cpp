@@ -591,6 +591,38 @@ TEST_F(Made, ThePictureNumberedOneIsTheFirstFrameOfTheVideoThatIsGiven) {
               HasSubstr("its frame 0, counted from 0, is taken for the picture a_000001 of a"));
 }
 
+// COCO numbers the pictures of every second frame one after another.
+TEST_F(Made, LabelsOfEverySecondFrameAreThoseOfTheFramesOfTheVideoAtTheirTimes) {
+  const std::string name = "sky-across-b737";
+  const exchange::Clip whole = LabelledSet(set()).clip(name);
+  ExportOptions options;
+  options.images = Images::kNone;
+  options.split = Split::kNone;
+  options.every = 2;
+  const auto imported = [&](exchange::Format format, const char* labels) {
+    options.format = format;
+    const fs::path out = fresh(), again = fresh();
+    export_set(set(), out, options);
+    ImportOptions back;
+    back.format = format;
+    back.videos[name] = whole.media;
+    std::string warnings;
+    back.warn = [&](const std::string& warning) { warnings += warning + "\n"; };
+    import_set(out / labels, again, back);
+    return std::pair(LabelledSet(again).clip(name), warnings);
+  };
+  const auto [coco, said] = imported(exchange::Format::kCoco, "annotations/instances_all.json");
+  ASSERT_EQ(coco.frames.size(), whole.frames.size() / 2);
+  for (std::size_t i = 0; i < coco.frames.size(); ++i) {
+    EXPECT_EQ(coco.frames[i].frame, whole.frames[2 * i].frame);
+    EXPECT_EQ(coco.frames[i].labels.at(0).box_px, whole.frames[2 * i].labels.at(0).box_px);
+  }
+  EXPECT_EQ(coco.frame_rate_hz, whole.frame_rate_hz);
+  EXPECT_THAT(said, HasSubstr("they are taken for those of the frames at their times"));
+  EXPECT_THAT(imported(exchange::Format::kMot, "").second,
+              HasSubstr("their frame k is taken for its frame k"));
+}
+
 // A folder whose name begins with a dot is none of the set's sequences.
 TEST_F(Made, ANameThatBeginsWithADotIsImportedInSight) {
   const fs::path out = fresh();

@@ -2,8 +2,10 @@
 #include "dataset/labelled/import.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include <airtruth/version.h>
 #include <fmt/format.h>
@@ -99,6 +101,46 @@ void leave_out_outside(exchange::Clip& clip, exchange::LeftOut& left_out) {
     });
 }
 
+// The numbers of a video's frames at the times of those of a clip, which ascend; empty where not
+// all have one.
+std::vector<std::int64_t> numbers_at_times(const exchange::Clip& clip, double video_rate_hz) {
+  constexpr double kMostFrames = 1e9;  // a year of video at 30 Hz
+  std::vector<std::int64_t> numbers;
+  for (const exchange::LabelledFrame& frame : clip.frames) {
+    const double place = frame.time_s.value_or(-1) * video_rate_hz;
+    if (!(place >= 0 && place < kMostFrames)) return {};
+    const std::int64_t number = std::llround(place);
+    if (!numbers.empty() && number <= numbers.back()) return {};
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+// Labels at another rate than the video's number other frames. Those of every n-th frame (`dataset
+// export --every n`) that state their times get the numbers of the frames at these; of others it is
+// said what they are taken for.
+void number_at_rate(exchange::Clip& clip, double video_rate_hz, const Warn& warn) {
+  constexpr double kSameRate = 0.01;  // of a rate, as 29.97 is for 30: chosen
+  const double ratio = video_rate_hz / clip.frame_rate_hz.value_or(video_rate_hz);
+  if (std::abs(ratio - 1) <= kSameRate) return;
+  const double every = std::round(ratio);
+  std::vector<std::int64_t> numbers;
+  if (every > 1 && std::abs(ratio - every) <= kSameRate * every)
+    numbers = numbers_at_times(clip, video_rate_hz);
+  airtruth::warn(
+      warn,
+      fmt::format("{}: has {:.6g} frames a second, and the labels of {} have {:.6g}: {}",
+                  clip.media.string(),
+                  video_rate_hz,
+                  clip.name,
+                  *clip.frame_rate_hz,
+                  numbers.empty() ? "their frame k is taken for its frame k"
+                                  : "they are taken for those of the frames at their times"));
+  if (numbers.empty()) return;
+  for (std::size_t i = 0; i < numbers.size(); ++i) clip.frames[i].frame = numbers[i];
+  clip.frame_rate_hz = video_rate_hz;
+}
+
 // Fills in sizes, rates and times that the labels lack and the video states.
 void ask_video(exchange::Clip& clip, const Warn& warn) {
   if (clip.media.empty() || clip.frames.empty()) return;
@@ -109,13 +151,26 @@ void ask_video(exchange::Clip& clip, const Warn& warn) {
   }
   const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}, warn).info();
   expect_size(clip, info.width, info.height, clip.media);
-  if (!clip.frame_rate_hz && info.is_rate_stated) clip.frame_rate_hz = info.frame_rate.value();
-  const std::int64_t labelled = clip.frames.back().frame + 1;
-  if (info.frame_count_estimate > 0 && labelled > info.frame_count_estimate)
+  if (info.is_rate_stated) {
+    if (!clip.frame_rate_hz) clip.frame_rate_hz = info.frame_rate.value();
+    number_at_rate(clip, info.frame_rate.value(), warn);
+  }
+  const std::int64_t labelled = clip.frames.back().frame + 1, all = info.frame_count_estimate;
+  const auto say = [&](const char* labels_are) {
     airtruth::warn(warn,
-                   clip.media.string() + ": has about " +
-                       std::to_string(info.frame_count_estimate) + " frames, and the labels of " +
-                       clip.name + " go on to the " + std::to_string(labelled) + "th");
+                   fmt::format("{}: has about {} frames, and the labels of {} {} {}th",
+                               clip.media.string(),
+                               all,
+                               clip.name,
+                               labels_are,
+                               labelled));
+  };
+  if (all > 0 && labelled > all) say("go on to the");
+  // Labels of every n-th frame without a number would be taken for those of the first ones.
+  constexpr double kMostOfAVideo = 0.9;
+  const bool are_in_a_row = labelled == std::ssize(clip.frames);
+  if (are_in_a_row && static_cast<double>(labelled) < kMostOfAVideo * static_cast<double>(all))
+    say("are of the first to the");
 }
 
 Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
