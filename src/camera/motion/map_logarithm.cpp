@@ -34,7 +34,6 @@ const Homography kNone = Homography::Constant(std::numeric_limits<double>::quiet
 double distance_from_identity(const Homography& h) { return (h - Homography::Identity()).norm(); }
 
 // Not finite where the steps do not converge: for negative eigenvalues.
-
 Homography square_root(const Homography& h) {
   Homography root = h, inverse_root = Homography::Identity();
   for (int step = 0; step < kMostSteps; ++step) {
