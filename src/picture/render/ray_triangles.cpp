@@ -257,15 +257,19 @@ class RayTriangles::Projected {
   }
 
   // True where no ray within an angle from the axis meets the triangle: a plane that touches this
-  // cone has all corners on its other side.
+  // cone has all corners on its other side, or, of a cone wider than half of space, all corners are
+  // in the rest of space, which is convex.
   bool is_beyond(std::size_t triangle, double angle_rad) const {
-    if (!(angle_rad < kPi / 2)) return false;
+    if (!(angle_rad < kPi)) return false;
+    const bool is_wide = angle_rad >= kPi / 2;
     const Corners middle = corners(triangle, moments() / 2);
     const Pixel aside = (middle[0] + middle[1] + middle[2]).head<2>();
     const Pixel side = aside.isZero(0) ? Pixel(1, 0) : Pixel(aside.normalized());
     const Vector3 outwards(
         std::cos(angle_rad) * side.x(), std::cos(angle_rad) * side.y(), -std::sin(angle_rad));
-    const auto is_outside = [&](const Vector3& point) { return outwards.dot(point) > 0; };
+    const auto is_outside = [&](const Vector3& point) {
+      return is_wide ? point.z() < std::cos(angle_rad) * point.norm() : outwards.dot(point) > 0;
+    };
     for (std::size_t k = 0; k < moments(); ++k)
       if (!std::ranges::all_of(corners(triangle, k), is_outside)) return false;
     if (moments() == 1) return true;
