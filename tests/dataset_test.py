@@ -200,7 +200,7 @@ class Slurm(unittest.TestCase):
         write("refuses", "")
         done = submit("refused")
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
-        self.assertIn("; sbatch: error: limit; expected", done.stderr)
+        self.assertIn("sbatch failed: sbatch: note: 1234 core hours are left; sbatch: error: limit; expected", done.stderr)
         with open(path("cancelled")) as cancelled:
             self.assertEqual(cancelled.read(), "--clusters=far 4711\n")
 

@@ -73,26 +73,23 @@ using Corners = std::array<Vector3, 3>;
 
 // An angle from the lens's axis within which the rays of a patch lie at all times of the span.
 double angle_of_rays(const View& view, const PixelBox& patch, const Span& span) {
-  // The border is looked at from point to point; what lies between them is within the margin.
-  constexpr int kPoints = 16;
+  // The border is looked at from pixel to pixel, since near the end of a lens's field the angle
+  // rises by degrees within a few; what lies between two is within the margin.
   constexpr double kMarginRad = 0.02;
-  double least = 1;  // cosine
+  double angle_rad = 0;
+  const auto look = [&](const View& then, int x, int y) {
+    const Vector3 ray = ray_in_cam(then, Pixel(x, y));
+    angle_rad =
+        std::max(angle_rad, ray.allFinite() ? std::acos(ray.z()) : view.lens->max_angle_rad());
+  };
   for (int k = 0; k < 3; ++k) {
     const View then = view.at(span.at(k));
-    for (int i = 0; i <= kPoints; ++i) {
-      const double x = patch.x + double(patch.width) * i / kPoints;
-      const double y = patch.y + double(patch.height) * i / kPoints;
-      for (const Pixel& pixel : {Pixel(x, patch.y),
-                                 Pixel(x, patch.bottom()),
-                                 Pixel(patch.x, y),
-                                 Pixel(patch.right(), y)}) {
-        const Vector3 ray = ray_in_cam(then, pixel);
-        if (!ray.allFinite()) return view.lens->max_angle_rad() + kMarginRad;
-        least = std::min(least, ray.z());
-      }
-    }
+    for (int x = patch.x; x <= patch.right(); ++x)
+      for (const int y : {patch.y, patch.bottom()}) look(then, x, y);
+    for (int y = patch.y; y <= patch.bottom(); ++y)
+      for (const int x : {patch.x, patch.right()}) look(then, x, y);
   }
-  return std::acos(least) + kMarginRad;
+  return angle_rad + kMarginRad;
 }
 
 // Of the part of a triangle in front of a pinhole's plane; everywhere where a point of it has no

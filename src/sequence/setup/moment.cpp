@@ -41,11 +41,10 @@ Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rot
 // part, and half a pixel to spare.
 constexpr double kSearchMarginPx = 1.5;
 
-constexpr double kFarPx = 1e6;  // pixels_of() goes no farther
-
 // For an aircraft so near that a part of it has no pixel: the rest may lie anywhere, also beyond
 // the frame, which cuts it.
 Box everywhere(const lens::ImageSize& size) {
+  constexpr double kFarPx = 1e6;  // pixels_of() goes no farther
   return wider(Box{0, 0, double(size.width), double(size.height)}, kFarPx);
 }
 
@@ -54,10 +53,6 @@ struct Cone {
   Vector3 axis = Vector3::UnitZ();
   double half_angle_rad = kPi;
 };
-
-double angle_between(const Vector3& a, const Vector3& b) {
-  return 2 * std::atan2((a - b).norm(), (a + b).norm());
-}
 
 // The cone that holds an aircraft throughout the frame's exposure and readout.
 Cone cone_of(const Actor& actor,
@@ -77,59 +72,35 @@ Cone cone_of(const Actor& actor,
           std::asin(radius_m / distance_m) + half_s * sight.camera.rate_radps.norm()};
 }
 
-// The rays of a lattice of pixels over the picture.
-struct Lattice {
-  static constexpr int kStepPx = 16;
+// A direction, or beyond the lens's field the one at its end on the same side of the axis.
+Vector3 within_field(const Vector3& direction, const lens::Lens& lens) {
+  const double end_rad = lens.max_angle_rad() * (1 - 1e-9);  // within it by more than a rounding
+  const Pixel aside = direction.head<2>();
+  if (std::atan2(aside.norm(), direction.z()) <= end_rad || aside.isZero(0)) return direction;
+  const Pixel side = std::sin(end_rad) * aside.normalized();
+  return {side.x(), side.y(), std::cos(end_rad)};
+}
 
-  explicit Lattice(const lens::Lens& lens)
-      : columns((lens.size().width + kStepPx - 1) / kStepPx),
-        rows((lens.size().height + kStepPx - 1) / kStepPx) {
-    for (int y = 0; y <= rows; ++y)
-      for (int x = 0; x <= columns; ++x)
-        rays.push_back(lens.ray_from_pixel(Pixel(x * kStepPx, y * kStepPx)));
-  }
-  const std::optional<Vector3>& at(int x, int y) const {
-    return rays[static_cast<std::size_t>(y * (columns + 1) + x)];
-  }
-  // The greatest angle to a neighbour that has a ray.
-  double step_rad(int x, int y) const {
-    double widest = 0;
-    for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
-      const int to_x = x + dx, to_y = y + dy;
-      if (to_x < 0 || to_y < 0 || to_x > columns || to_y > rows || !at(to_x, to_y)) continue;
-      widest = std::max(widest, angle_between(*at(x, y), *at(to_x, to_y)));
-    }
-    return widest > 0 ? widest : kPi;
-  }
-
-  int columns, rows;
-  std::vector<std::optional<Vector3>> rays;
-};
-
-// Bounds of the pixels whose rays lie in a cone, and some around; beyond the frame where they touch
-// its edge.
+// Bounds of the pixels whose rays lie in a cone: those of its rim and of the end of the field
+// within it, and a margin for what lies between the directions that are looked at. Empty where the
+// cone comes near the direction opposite to the lens's axis, about which its rim turns too fast.
 std::optional<Box> box_of(const Cone& cone, const lens::Lens& lens) {
-  // Of the steps around a lattice pixel, so far from it the ray of a pixel next to it may be. Where
-  // the curve of a lens stops rising as a parabola does, the last ray is 2.4 steps away.
-  constexpr double kReachSteps = 3;
-  const Lattice lattice(lens);
+  constexpr double kFarthestOffAxisRad = 5 * kPi / 6;
+  if (!(std::acos(cone.axis.z()) + cone.half_angle_rad < kFarthestOffAxisRad)) return std::nullopt;
+  constexpr int kDirections = 128;
+  constexpr double kMarginShare = 0.05;  // of the longer side; the directions are that far apart
+  const Vector3 across = cone.axis.unitOrthogonal(), along = cone.axis.cross(across);
   BoxBounds bounds;
-  for (int y = 0; y <= lattice.rows; ++y)
-    for (int x = 0; x <= lattice.columns; ++x)
-      if (lattice.at(x, y) && angle_between(*lattice.at(x, y), cone.axis) <=
-                                  cone.half_angle_rad + kReachSteps * lattice.step_rad(x, y))
-        bounds.add(Pixel(x, y) * Lattice::kStepPx);
-  auto box = bounds.box();
+  for (int i = 0; i < kDirections; ++i) {
+    const double turn_rad = 2 * kPi * i / kDirections;
+    const Vector3 rim =
+        std::cos(cone.half_angle_rad) * cone.axis +
+        std::sin(cone.half_angle_rad) * (std::cos(turn_rad) * across + std::sin(turn_rad) * along);
+    if (const auto pixel = lens.pixel_from_cam(within_field(rim, lens))) bounds.add(*pixel);
+  }
+  const auto box = bounds.box();
   if (!box) return box;
-  box = wider(*box, Lattice::kStepPx);
-  const auto beyond = [](double place, double edge, double far_px) {
-    return (far_px < 0 ? place <= edge : place >= edge) ? edge + far_px : place;
-  };
-  const double left = beyond(box->x, 0, -kFarPx), top = beyond(box->y, 0, -kFarPx);
-  return Box{left,
-             top,
-             beyond(box->right(), lens.size().width, kFarPx) - left,
-             beyond(box->bottom(), lens.size().height, kFarPx) - top};
+  return wider(*box, kSearchMarginPx + kMarginShare * std::max(box->width, box->height));
 }
 
 // The exact box is that of the silhouette's points. Through a lens that is no pinhole the straight
@@ -152,7 +123,7 @@ Box box_of_partly_unseen(const Box& seen,
       !sight.frame_from_nominal.isIdentity(0))
     return everywhere(lens.size());
   const auto box = box_of(cone_of(actor, state, twist, sight), lens);
-  return box ? bounds(*box, seen) : seen;
+  return box ? bounds(*box, seen) : everywhere(lens.size());
 }
 
 std::optional<Box> search_box(const projection::ExactBox& exact,
